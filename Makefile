@@ -65,7 +65,7 @@ charts: setup ## docs/charts and docs/integrators.md, some 20 minutes; out/ keep
 	cargo run --release --example gallery -- --out docs/charts
 	cargo run --release --example integrators -- --out docs
 
-advice: setup ## docs/advice.md, the adviser on trial, some 10 minutes
+advice: setup ## docs/advice.md, tests of the adviser, some 10 minutes
 	cargo run --release --example advice
 
 stability: setup ## docs/stability.md with its pictures, some minutes

@@ -1,4 +1,4 @@
-//! The adviser on trial: what it promises for each scene of `scenes/` and some more, against a run that it knows nothing of.
+//! Tests of the adviser: its promises for each scene of `scenes/` and some more, against independent runs.
 //!
 //! `cargo run --release --example advice` writes `docs/advice.md`, in some 40 minutes.
 //!

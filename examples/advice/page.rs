@@ -3,20 +3,20 @@
 use crate::trial::Trial;
 
 const ABOUT: &str = "\
-# The adviser on trial
+# Tests of the adviser
 
-`pliant advise` says what model of a scene is enough, and how far off it is. Here it is asked about the whole motion of
-scenes, and what it says is compared with a run that it knows nothing of: the richest model that it found, on cells half as
+`pliant advise` recommends a sufficient model of a scene, with a bound of its error. Here its advice for the whole motion of
+scenes is compared with an independent run: the richest model that it found, on cells half as
 large as its finest, by ARKODE at a tenth of its tightest tolerance. Errors are root mean square distances of the nodes over 101 times,
-relative to the root mean square displacement. Where Green strain gave the adviser no motion, all is said of Cauchy strain. All numbers are results of `cargo run --release --example advice`.
+relative to the root mean square displacement. Where Green strain gave the adviser no motion, Cauchy strain is the reference. All numbers are results of `cargo run --release --example advice`.
 ";
 
 const COLUMNS: &str = "\
-*Promised*: the most that it may be off by, the sum of the parts of its error as the adviser measured them, with what the adviser's own
-finest mesh may be off by. *True*: against the run that it knows nothing of. *As written*: what it says of the scene file as it stands, and what is true. *Faster*: time of the scene as written over
-that of what is enough. *Advice*: what the advice took, and how many times the run that it is compared with.
+*Promised*: bound of the error, the sum of its parts as the adviser measured them, with the possible error of the adviser's own
+finest mesh. *True*: against the independent run. *As written*: the error that it states for the scene file as written, and the true one. *Faster*: time of the scene as written over
+that of the sufficient model. *Advice*: time of the advice, also relative to that of the independent run.
 
-| scene | what is enough | promised | true | as written, told | true | faster | advice | in such runs |
+| scene | sufficient model | promised | true | as written, estimated | true | faster | advice | in such runs |
 | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
 ";
 
@@ -29,7 +29,7 @@ pub fn page(trials: &[Trial], within: f64, budget: f64) -> String {
     let finer = count(Trial::is_against_finer);
     let cheap = count(|trial| trial.is_against_finer() && trial.cost() <= Some(3.0));
     page += &format!(
-        "\nAsked for {} % within {budget} s: of {} scenes {judged} were given a model that is enough, and {right} of these are right. \
+        "\nRequest: {} % within {budget} s. Of {} scenes {judged} got a sufficient model, and {right} of these are correct. \
          {finer} of them are compared with a run on a finer mesh, the others with one on their own; of those {finer} \
          the advice took at most three times that run for {cheap}.\n\n",
         100.0 * within,
@@ -45,19 +45,19 @@ pub fn page(trials: &[Trial], within: f64, budget: f64) -> String {
         })
         .collect();
     if !unsure.is_empty() {
-        page += "\nCompared on the adviser's own finest mesh, and not on a finer one, as there was none:\n\n";
+        page += "\nCompared on the adviser's own finest mesh, as there was no finer one:\n\n";
         unsure.iter().for_each(|line| page += line);
     }
     let silent = trials.iter().filter(|trial| trial.advice.enough.is_none());
     let silent: Vec<String> = silent
         .map(|trial| {
             let advice = trial.advice.to_string();
-            let line = advice.lines().find(|line| line.starts_with("Nothing"));
+            let line = advice.lines().find(|line| line.starts_with("No candidate"));
             format!("- **{}**: {}\n", trial.name, line.unwrap_or("no motion to compare with"))
         })
         .collect();
     if !silent.is_empty() {
-        page += "\nNothing was promised:\n\n";
+        page += "\nWithout a bound:\n\n";
         silent.iter().for_each(|line| page += line);
     }
     page
@@ -66,10 +66,10 @@ pub fn page(trials: &[Trial], within: f64, budget: f64) -> String {
 const SOFT: &str = "
 ## Thirty scenes of silicone
 
-Fingers, rooms with sharp corners, blocks and pads, each with Poisson's ratio 0.45, 0.49 and 0.499, in a plane and in space: bending,
-air, contact, friction. Each number is *promised / true*, as above. A promise *holds* if the true error is at most what was
-promised; it is compared with a mesh finer than any that the adviser has seen, or stands in brackets: then there was none within the time.
-*On this mesh*: the adviser says that it does not know what the mesh is off by, and promises nothing of it.
+Fingers, chambers with sharp corners, blocks and pads, each with Poisson's ratio 0.45, 0.49 and 0.499, in a plane and in space: bending,
+air, contact, friction. Each number is *promised / true*, as above. A promise *holds* if the true error is at most the
+promised one; the comparison is with a mesh finer than all of the adviser's, or in brackets, if there was none within the time.
+*On this mesh*: the adviser states that the error of the mesh is unknown, and gives no bound of it.
 ";
 
 /// The section on scenes of silicone: each scene's trials, by accuracy.
@@ -77,7 +77,7 @@ pub fn soft(scenes: &[Vec<Trial>], budget: f64) -> String {
     let Some(first) = scenes.first() else { return String::new() };
     let mut page = SOFT.to_owned();
     page += &format!(
-        "\nWithin {budget} s each:\n\n| asked for | promises | hold | below the accuracy asked for | promised over true, median | not known | advice, mean |\n\
+        "\nWithin {budget} s each:\n\n| requested | promises | hold | below the requested accuracy | promised over true, median | not known | advice, mean |\n\
          | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
     );
     for (number, accuracy) in first.iter().map(|trial| trial.advice.accuracy).enumerate() {

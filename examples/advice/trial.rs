@@ -1,4 +1,4 @@
-//! One scene: what is promised, and what is true.
+//! One scene: the promised error and the true one.
 
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -6,7 +6,7 @@ use std::time::Instant;
 use pliant::study::{Advice, Adviser, Candidate, Choice, time_text};
 use pliant::{Error, Method, Sampling, Scene, Settings};
 
-/// An advice and what it is compared with.
+/// An advice and its reference.
 pub struct Trial {
     pub name: String,
     pub advice: Advice,

@@ -103,7 +103,7 @@ fn power(trials: &[Trial]) -> Outcome<impl Fn(f64) -> f64> {
 
 fn fitted(trials: &[Trial], rows: &[Row]) -> Outcome<String> {
     let mut table = String::from(
-        "\n| model | E (kPa) | walls between chambers (mm) | left over | runs | Hz unloaded, at 200 and 400 mbar | damping unloaded | unknowns |\n\
+        "\n| model | E (kPa) | walls between chambers (mm) | residual | runs | Hz unloaded, at 200 and 400 mbar | damping unloaded | unknowns |\n\
          | --- | --- | --- | --- | --- | --- | --- | --- |\n",
     );
     let span = |of: usize, pressures: &[f64], digits: usize| {

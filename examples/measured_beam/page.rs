@@ -161,7 +161,7 @@ pub fn write(trials: &Trials, out: &Path) -> Outcome<()> {
         page,
         "\nThe spring of the fourth row has {stiffness:.0} N/m and {damping:.1} N s/m, found on the first trial under the load.\n\n\
          ![The beam under its own weight](validation/own.svg)\n\n![The beam under 52 g](validation/load.svg)\n\n\
-         ![What is left over](validation/left.svg)\n\n![How it sinks](validation/creep.svg)\n"
+         ![Residuals](validation/left.svg)\n\n![Creep](validation/creep.svg)\n"
     )?;
     let branch = &rows[5];
     let [of_branch_a, of_branch_b] = off(&branch.loaded);
@@ -353,7 +353,7 @@ fn draw(trials: &Trials, rows: &[Row], pictures: &Path) -> Outcome<()> {
         let seen = measured(trial, SWINGING);
         model.iter().zip(seen).map(|((time, model), (_, seen))| (*time, model - seen)).collect()
     };
-    chart("What is left over", "model - measured (mm)")
+    chart("Residuals", "model - measured (mm)")
         .series("own weight", left(plain, own))
         .series("52 g as a mass", left(mass, loaded))
         .series("52 g on a damped spring", left(on_spring, loaded))

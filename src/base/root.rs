@@ -1,4 +1,4 @@
-//! Where a function of one variable changes its sign, between two points where it is known.
+//! Sign changes of a function of one variable, between two points where it is known.
 
 /// Which changes of sign of an event function count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,7 +52,7 @@ pub(crate) fn bracket<E>(
     Ok((near, far))
 }
 
-/// Where to look next for a root between two points.
+/// Next trial point for a root between two points.
 ///
 /// The Illinois algorithm, a secant method that keeps the root between its two points (M. Dowell, P. Jarratt,
 /// BIT 11 (1971) 168-174), until it is [`BEHIND`] evaluations behind bisection, as at a jump; bisection from

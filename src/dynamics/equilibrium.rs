@@ -1,4 +1,4 @@
-//! A scene in equilibrium, and what a search for one returns that fails.
+//! A scene in equilibrium, and the result of a failed search for one.
 
 use std::fmt;
 
@@ -104,13 +104,13 @@ impl MeshEstimate {
 
     /// Whether the remainder is no larger than the correction, apart from round-off.
     ///
-    /// If it is larger, the correction may be far off, and is not told in words.
+    /// If it is larger, the correction may be wrong, and is not reported in words.
     pub fn is_reliable(&self) -> bool {
         let round_off = 1e-9 * self.value.abs().max(self.change.abs());
         self.remainder.abs() <= self.correction.abs().max(round_off)
     }
 
-    /// The cells (from 0) that contribute most, with half of all contributions together, ascending: what to divide next, by
+    /// The cells (from 0) that contribute most, with half of all contributions together, ascending: the cells to divide next, by
     /// [`Scene::halved_in`](crate::Scene::halved_in) (W. Dörfler, SIAM J. Numer. Anal. 33 (1996) 1106-1124).
     pub fn worst_cells(&self) -> Vec<usize> {
         worst_cells(&self.cells, 0.5)
@@ -217,7 +217,7 @@ pub struct NoEquilibrium {
     pub residual: f64,
     /// Newton iterations in all load steps.
     pub iterations: usize,
-    /// The likely cause, and what to try.
+    /// The likely cause, and the remedy.
     pub cause: String,
     /// The undeformed shape and, at `fraction` times the end of the phase, the last equilibrium found, if
     /// any; earlier ones as in [`Equilibrium::trajectory`].

@@ -18,7 +18,7 @@ pub enum Error {
     #[error(transparent)]
     Input(#[from] InputError),
 
-    /// The integrator gave up; what was computed until then is kept inside.
+    /// The integrator failed; the results until then are kept inside.
     #[error(transparent)]
     Integration(#[from] Box<IntegrationFailure>),
 
@@ -41,7 +41,7 @@ pub enum Error {
         path: PathBuf,
         /// Number of the line, from 1.
         line: usize,
-        /// The key, with those of the tables around it; empty for what is about no single key.
+        /// The key, with those of the tables around it; empty for an error of no single key.
         key: String,
         /// Cause and remedy.
         message: String,
@@ -54,7 +54,7 @@ pub enum Error {
     Reference {
         /// Relative tolerance.
         rtol: f64,
-        /// Why the methods failed.
+        /// Reason for the failure of the methods.
         failures: String,
         /// Remedy.
         help: String,
@@ -65,7 +65,7 @@ pub enum Error {
     Read {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// The reason.
         source: std::io::Error,
     },
 
@@ -74,7 +74,7 @@ pub enum Error {
     Output {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// The reason.
         source: std::io::Error,
     },
 }

@@ -1,8 +1,8 @@
 //! The motion of a scene: its equations, phase by phase, and their solution by an integrator.
 //!
-//! `matrices` has what is constant, `linear` the linear solvers, `system` the equations of a phase as ODE, DAE and system of
+//! `matrices` has the constant matrices, `linear` the linear solvers, `system` the equations of a phase as ODE, DAE and system of
 //! second order, `reduced` those by a reduced model, `phase` the integrators of either, [`simulate`] the run, [`statics`] the
-//! equilibrium, [`trajectory`] what a run returns, `report` what it cost and `indicators` what makes it doubtful.
+//! equilibrium, [`trajectory`] the results of a run, `report` its cost and `indicators` its reliability.
 
 pub mod equations;
 pub(crate) mod equilibrium;

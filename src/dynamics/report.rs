@@ -1,4 +1,4 @@
-//! How a motion was computed, phase by phase, and at what cost.
+//! Report of a computed motion, phase by phase, with its cost.
 
 mod indicator;
 mod reduced;
@@ -12,7 +12,7 @@ pub use reduced::{ReducedReport, SensorErrorEstimate};
 use crate::base::input::four_digits;
 use crate::scene::settings::Method;
 
-/// How a trajectory was computed.
+/// Report of a computed trajectory.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
     /// Title of the scene, if its file has one; empty otherwise.
@@ -46,7 +46,7 @@ pub struct Report {
     pub indicators: Vec<Indicator>,
     /// Choices made where a scene file says `auto`, with the reasons.
     pub chosen: Vec<String>,
-    /// How accurately the motion is known, if it was
+    /// Accuracy of the motion, if it was
     /// [verified](crate::studies::work_precision::Verification).
     pub achieved: Option<Achieved>,
     /// Error report of a run by a reduced model.
@@ -55,7 +55,7 @@ pub struct Report {
     pub phases: Vec<PhaseReport>,
 }
 
-/// How accurately a motion is known: the difference of two runs, the second with a tenth of the tolerance of
+/// Accuracy of a motion: the difference of two runs, the second with a tenth of the tolerance of
 /// the first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Achieved {
@@ -115,7 +115,7 @@ impl fmt::Display for Achieved {
     }
 }
 
-/// How one phase was computed.
+/// Report of one phase.
 #[derive(Debug, Clone)]
 pub struct PhaseReport {
     /// Name of the phase.
@@ -130,7 +130,7 @@ pub struct PhaseReport {
     pub wall_seconds: f64,
     /// Method at the end of the phase: the requested one, or the choice of [`Method::Auto`].
     pub method: Method,
-    /// Why that method, if it was chosen.
+    /// Reason for the choice of that method, if it was chosen.
     pub reason: Option<String>,
     /// Steps, evaluations, factorizations.
     pub counts: Counts,
@@ -199,7 +199,7 @@ impl Report {
         self.counts().convergence_failures
     }
 
-    /// The warnings of the [`indicators`](Self::indicators), each with what to change.
+    /// The warnings of the [`indicators`](Self::indicators), each with its remedy.
     pub fn doubts(&self) -> Vec<String> {
         warnings(&self.indicators)
     }
@@ -222,7 +222,7 @@ impl Report {
             Some(("integrator", format!("phase \"{}\": {notice}", phase.name)))
         };
         let mut warnings: Vec<_> = self.phases.iter().filter_map(notice).collect();
-        // the balance is off by the larger of what was created and what was lost
+        // the error of the balance is the larger of created and lost energy
         let doubt = match self.energy_error > self.energy_created {
             true => loss(self.energy_error, self.energy_scale),
             false => creation(self.energy_created, self.energy_scale),
@@ -338,7 +338,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// How often a body began to slide or to stick, and when it first did.
+/// Number of transitions to sliding or sticking, and time of the first.
 fn slips_in_words(slips: &[SlipEvent]) -> Option<String> {
     let of = |slides: bool| {
         let mut of_kind = slips.iter().filter(|slip| slip.slides == slides);
@@ -408,7 +408,7 @@ impl Counts {
 mod tests {
     use super::*;
 
-    /// The balance is told by the larger of what was lost and what was created.
+    /// The reported error of the balance is the larger of lost and created energy.
     #[test]
     fn energy_is_lost_or_created() {
         let told = |energy_error, energy_created| {

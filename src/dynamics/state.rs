@@ -1,4 +1,4 @@
-//! The unknowns of a phase, and where each is in the state y of an integrator:
+//! The unknowns of a phase, and their layout in the state y of an integrator:
 //!
 //! ```text
 //! y = (u, v, e, m, E_d, E_s)
@@ -94,7 +94,7 @@ impl Layout {
         [u, v, internal, &[0.0; ENERGIES]].concat()
     }
 
-    /// The strains of branches and the amounts among `internal` unknowns; none of either where these are left out.
+    /// The strains of branches and the amounts among `internal` unknowns; none of either where these are omitted.
     pub(crate) fn split(self, internal: &[f64]) -> (&[f64], &[f64]) {
         internal.split_at(self.strains.min(internal.len()))
     }

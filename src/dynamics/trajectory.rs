@@ -105,7 +105,7 @@ pub struct Trajectory {
     /// The least and the largest reading of each sensor, also between samples; empty unless requested.
     pub(crate) peaks: Vec<[f64; 2]>,
     pub(crate) report: Report,
-    /// How deep the surface got into each obstacle.
+    /// Largest depth of the surface in each obstacle.
     pub(crate) penetrations: Vec<Penetration>,
     /// Paths that began away from their nodes.
     pub(crate) leaps: Vec<Leap>,
@@ -223,7 +223,7 @@ impl Trajectory {
         self.samples.push(sample);
     }
 
-    /// Records what the sensors read at any time.
+    /// Records the readings of the sensors at any time.
     pub(crate) fn note_peaks(&mut self, read: &[f64]) {
         self.peaks.resize(read.len(), [f64::INFINITY, f64::NEG_INFINITY]);
         for ([least, largest], x) in self.peaks.iter_mut().zip(read) {
@@ -307,7 +307,7 @@ impl Trajectory {
         &self.sensors
     }
 
-    /// How it was computed.
+    /// Report of the computation.
     pub fn report(&self) -> &Report {
         &self.report
     }
@@ -368,7 +368,7 @@ impl Trajectory {
     }
 }
 
-/// An integration that gave up or was stopped: where, why, and what was computed until then.
+/// An integration that failed or was stopped: time, reason, and the results until then.
 #[derive(Debug)]
 pub struct IntegrationFailure {
     /// Name of the phase.
@@ -379,7 +379,7 @@ pub struct IntegrationFailure {
     pub time: f64,
     /// Last step size (s).
     pub step: f64,
-    /// The error of the integrator, with the likely cause and what to try; [`Interrupted`] if it was
+    /// The error of the integrator, with the likely cause and the remedy; [`Interrupted`] if it was
     /// stopped from outside.
     pub source: Box<dyn Error + Send + Sync>,
     /// The motion until then, up to the last step.

@@ -13,12 +13,12 @@ pub use nodal::{ForceVector, NodalForces, Reservoir, Step};
 use crate::base::sparse::{BlockMatrix, NodePattern};
 use crate::integrators::ode::Failure;
 
-/// Where the tangents of a force come from, as [`Force::add_tangents`] returns it.
+/// Source of the tangents of a force, as [`Force::add_tangents`] returns it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tangents {
     /// The force has added them.
     Added,
-    /// Finite differences of [`Force::add_forces`] stand in for them.
+    /// Finite differences of [`Force::add_forces`] replace them.
     ByDifferences,
 }
 
@@ -30,7 +30,7 @@ pub enum Tangents {
 /// [`is_nonlinear`](Self::is_nonlinear)), couple distant nodes ([`couplings`](Self::couplings)), or have kinks, meet surfaces or
 /// lose their meaning between two steps ([`capabilities`](Self::capabilities)).
 ///
-/// # What a force may rely on, and what it has to keep
+/// # Guarantees and obligations
 ///
 /// - `u` and `v` have dimension components for each node of the body, node after node.
 /// - Integrators evaluate the force at trial points: in any order, back and forth in time, off the motion,
@@ -63,10 +63,10 @@ pub trait Force: Send + Sync {
     /// Adds -df/du to `stiffness` and -df/dv to `damping`. They need not be symmetric: the Newton
     /// matrix takes their symmetric part.
     ///
-    /// A force that leaves this out (and returns [`Tangents::ByDifferences`], without adding anything) gets
+    /// A force that omits this (and returns [`Tangents::ByDifferences`], without adding anything) gets
     /// finite differences of [`add_forces`](Self::add_forces). They cost one evaluation at the state itself
     /// and, for each of the two matrices: one if the force does not depend on u (or v); else one more than
-    /// the dimension of space if it acts on each node by itself, and several times as many if it couples
+    /// the dimension of space if it acts on each node separately, and several times as many if it couples
     /// nodes. The report gives their number. A force whose [`is_nonlinear`](Self::is_nonlinear) is false has
     /// no tangents.
     fn add_tangents(
@@ -91,12 +91,12 @@ pub trait Force: Send + Sync {
         0.0
     }
 
-    /// Where that energy belongs.
+    /// The account of that energy.
     fn reservoir(&self) -> Reservoir {
         Reservoir::None
     }
 
-    /// Nodes (counted from 0) that it depends on or acts on; any if it does not say.
+    /// Nodes (counted from 0) that it depends on or acts on; any if it names none.
     #[doc(hidden)]
     fn nodes(&self) -> Option<Vec<usize>> {
         None
@@ -106,7 +106,7 @@ pub trait Force: Send + Sync {
     /// have entries for these pairs only, and for nodes that share a cell, which need not be named.
     ///
     /// Finite differences look for couplings of the named pairs alone first, which is cheap, and of
-    /// nodes that share a cell if those do not explain how the force changes.
+    /// nodes that share a cell if those do not explain the change of the force.
     fn couplings(&self) -> Vec<[usize; 2]> {
         Vec::new()
     }
@@ -187,7 +187,7 @@ pub trait Switches {
     /// Writes the values of the switches: above 0 where a part of the force is off.
     fn switch_values(&self, t: f64, u: &[f64], v: &[f64], values: &mut [f64]);
 
-    /// Keeps each switch on or off, whatever its value, so that the force is smooth; `None` lets all
+    /// Keeps each switch on or off, independent of its value, so that the force is smooth; `None` lets all
     /// of them act by their values again.
     fn hold_switches(&self, on: Option<&[bool]>);
 
@@ -220,23 +220,23 @@ pub trait ContactForce {
         damping: &mut [f64],
     );
 
-    /// Velocity (m/s) at time `t` (s) of the source of the force, if it moves by itself: an obstacle.
+    /// Velocity (m/s) at time `t` (s) of the source of the force, if its motion is prescribed: an obstacle.
     fn velocity(&self, _t: f64) -> Option<[f64; 3]> {
         None
     }
 
     /// Pairs of nodes (counted from 0) that the force couples under the displacements `u` (m), or may soon, if it
     /// couples any there that `pattern` lacks; none otherwise. For a force between nodes that move past each other,
-    /// whose [`couplings`](Force::couplings) would be too many: the Newton matrix gets room for these pairs before
+    /// whose [`couplings`](Force::couplings) would be too many: the Newton matrix gets entries for these pairs before
     /// tangents are evaluated.
     fn couplings_near(&self, _u: &[f64], _pattern: &NodePattern) -> Vec<[usize; 2]> {
         Vec::new()
     }
 }
 
-/// A force that looks at steps after they were taken.
+/// A force that checks completed steps.
 pub trait StepCheck {
-    /// Checks a step after it was taken, to time `t`, from displacements `before` to `after`.
+    /// Checks a completed step, to time `t`, from displacements `before` to `after`.
     ///
     /// # Errors
     /// A step that leapt over states in which the force has no meaning.

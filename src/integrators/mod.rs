@@ -1,4 +1,4 @@
-//! Integrators of ordinary differential and differential-algebraic equations; they know nothing of bodies.
+//! Integrators of ordinary differential and differential-algebraic equations; they are independent of bodies.
 //!
 //! [`automatic`] derives equations that are written over a number type. [`ode`] has the traits of the systems to integrate, [`solve`](mod@solve) integrates by one call. Below it
 //! are the integrators themselves: [`sundials`] (CVODE, IDA, ARKODE), [`rk`] (Dormand and Prince),

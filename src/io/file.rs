@@ -1,4 +1,4 @@
-//! Files that are complete or not there at all, and files that say what they are.
+//! Files that are either complete or absent, and files that name their kind.
 
 use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, Write};
@@ -46,7 +46,7 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
     }
 }
 
-/// A kind of JSON files, each of which begins with what it is and with its format.
+/// A kind of JSON files, each of which begins with its kind and its format.
 #[cfg(feature = "checkpoint")]
 pub(crate) struct Kind {
     /// Name of the kind as a file states it, the format that this version writes, and the oldest one that it reads.
@@ -95,7 +95,7 @@ impl Kind {
     fn parse<T: DeserializeOwned>(&self, text: &[u8]) -> Result<T, String> {
         let Self { what, format, oldest, help, .. } = self;
         let none = || format!("it does not say \"{what}\": name {help}");
-        let damaged = |error| format!("it is damaged or cut off ({error}): make it anew");
+        let damaged = |error| format!("it is damaged or cut off ({error}): recreate it");
         let head: Head = serde_json::from_slice(text).map_err(|error| match error.is_data() {
             true => none(),
             false => damaged(error),

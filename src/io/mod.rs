@@ -1,4 +1,4 @@
-//! Files: scenes, states and reduced models that are read, checkpoints, and what is written of a motion.
+//! Files: scenes, states and reduced models that are read, checkpoints, and results of a motion.
 
 #[cfg(feature = "checkpoint")]
 pub(crate) mod checkpoint_file;

@@ -33,14 +33,14 @@ struct Record {
     format: u32,
     /// Names of the parts of the scene that the model depends on, and their hashes.
     scene: Vec<(String, String)>,
-    /// Hash of both others, by which a file is told that was changed.
+    /// Hash of both others, by which a changed file is detected.
     #[serde(default)]
     checksum: Option<String>,
     model: ReducedModel,
 }
 
 impl ReducedModel {
-    /// Writes the model of `scene` to a file, as JSON, with hashes of what identifies the scene: positions of nodes, cells,
+    /// Writes the model of `scene` to a file, as JSON, with hashes that identify the scene: positions of nodes, cells,
     /// materials, and which nodes its phases hold and move. Loads, pressures and signals are not among them: a model is for
     /// scenes that differ in these. A number takes some 21 bytes: 24 shapes of 6048 displacements are 3 MB.
     ///
@@ -63,7 +63,7 @@ impl ReducedModel {
     ///
     /// # Errors
     /// [`Error::Read`] if there is no file that can be read; a file that holds no reduced model, is damaged, or was written
-    /// for another scene: the message names what differs.
+    /// for another scene: the message names the difference.
     pub fn read(path: impl AsRef<Path>, scene: &Scene) -> Result<Self, Error> {
         let path = path.as_ref();
         let Record { format, scene: parts, checksum: kept, model, .. } = KIND.read(path)?;
@@ -134,7 +134,7 @@ fn identity(scene: &Scene) -> Result<Vec<(String, String)>, InputError> {
     Ok(parts.map(|(name, bytes)| (name, hashed(&bytes))).collect())
 }
 
-/// The hash of a model and of what identifies its scene: of their text, which has all digits.
+/// The hash of a model and of the identity of its scene: of their text, which has all digits.
 fn checksum(scene: &[(String, String)], model: &ReducedModel) -> Result<String, InputError> {
     let text = serde_json::to_vec(&(scene, model));
     let text = text.map_err(|error| InputError::new("reduced model", error, HELP))?;
@@ -209,7 +209,7 @@ mod tests {
         let scene = scene(0.1, 1e5, "left");
         model(&scene).write(&path, &scene).unwrap();
         assert_eq!(ReducedModel::read(&path, &scene).unwrap(), model(&scene));
-        // what acts, and phases that are left out, do not matter
+        // loads, and omitted phases, do not matter
         let other = scene.clone().gravity([0.0, -9.8]).ended_at(0.05);
         assert_eq!(ReducedModel::read(&path, &other).unwrap(), model(&scene));
     }

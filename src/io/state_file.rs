@@ -117,7 +117,7 @@ impl SceneState {
         let Record { mut bodies, positions, displacements, velocities, .. } = record;
         let is_first = format == 1;
         if is_first == positions.is_empty() || is_first != bodies.is_empty() {
-            return Err(KIND.refuse(&path, "it has no bodies: make it anew"));
+            return Err(KIND.refuse(&path, "it has no bodies: recreate it"));
         }
         if is_first {
             let (name, branches) = (String::new(), None);

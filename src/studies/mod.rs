@@ -1,5 +1,5 @@
-//! Many runs for one answer: speed against accuracy, what to choose, unknowns fitted to measurements, a scene for
-//! many values of its keys, derivatives by the numbers of a scene, and the best of these; and problems with trusted answers to try them on.
+//! Many runs for one answer: speed against accuracy, recommended models, unknowns fitted to measurements, a scene for
+//! many values of its keys, derivatives by the numbers of a scene, and the best of these; and problems with trusted answers for tests.
 
 #[cfg(feature = "study")]
 pub mod advise;

@@ -109,7 +109,7 @@ fn a_model_is_learned_written_and_run() {
         &vary,
     ]);
     assert!(verified.status.success(), "{verified:?}");
-    says(&stdout(&verified), &["run 1: off by", "run 2: off by", "the run tells"]);
+    says(&stdout(&verified), &["run 1: off by", "run 2: off by", "the run estimates"]);
 }
 
 /// Without a run of all unknowns: the error is an estimate, and everything says so.
@@ -128,7 +128,7 @@ fn a_model_is_found_without_a_full_run() {
         (&json!(true), &Value::Null)
     );
     let run = place.run(&["run", scene, "--step", "0.02", "--reduced", "scene.reduced"]);
-    says(&stdout(&run), &["as told by this run, checked with none of all unknowns"]);
+    says(&stdout(&run), &["estimated by this run, not verified with all unknowns"]);
     let verified = place.run(&["reduce", scene, "--verify", "scene.reduced", "--within", "10%"]);
     assert!(verified.status.success(), "{verified:?}");
     let both = place.run(&["reduce", scene, "--modes", "--verify", "scene.reduced"]);
@@ -168,7 +168,7 @@ fn what_cannot_be_reduced_is_refused_before_anything_runs() {
             vec!["--vary", "body.material.young=1e5..2e5"],
             &["body.material.young", "changes the materials"],
         ),
-        (vec!["--vary", "solver.rtol=1e-5..1e-3"], &["solver.rtol", "no part of what happens"]),
+        (vec!["--vary", "solver.rtol=1e-5..1e-3"], &["solver.rtol", "does not change the motion"]),
         (vec!["--within", "150%"], &["150%", "above 0 and below 1"]),
         (vec!["--verify", "none.reduced"], &["none.reduced", "No such file"]),
         (vec!["--verify", "text.reduced"], &["text.reduced", "damaged or cut off"]),

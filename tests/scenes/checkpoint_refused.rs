@@ -149,7 +149,7 @@ fn files_that_are_not_what_they_should_be_are_refused() {
         (&|file| _ = file.as_object_mut().unwrap().remove("next_step"), &["damaged", "next_step"]),
         (&|file| file["time"] = json!(0.005), &["time 0.005 s", "\"drive\"", "0.01 s to 0.1 s"]),
         (&|file| file["time"] = json!(null), &["damaged", "null"]),
-        (&|file| file["phase"] = json!(2), &["phase 2 is none of 0 to 1"]),
+        (&|file| file["phase"] = json!(2), &["phase 2 is outside 0 to 1"]),
         (&|file| file["phase"] = json!(-1), &["damaged", "-1"]),
         (&|file| file["displacements"][7] = json!(null), &["damaged", "null"]),
         (&|file| file["velocities"] = json!([0.0]), &["1 velocities", "66"]),
@@ -172,7 +172,7 @@ fn files_that_are_not_what_they_should_be_are_refused() {
         ),
         (
             &|file| input(file, "load")[2] = json!({ "vector": { "of_scene": 9 } }),
-            &["signal 9", "none of the phase"],
+            &["phase in the scene has no signal 9"],
         ),
         (
             &|file| input(file, "load")[1] = json!({ "nodes": { "set": "tip" } }),

@@ -108,7 +108,7 @@ fn motions_below_their_tolerance() {
         warnings
     };
     let warnings = told(-0.02, None);
-    only(&warnings, &["of the way that nodes go (limit: 1 %)", "set atol_position to"]);
+    only(&warnings, &["of the travel of nodes (limit: 1 %)", "set atol_position to"]);
     let enough = warnings[0].split("set atol_position to ").nth(1).unwrap();
     let enough: f64 = enough.split(' ').next().unwrap().parse().unwrap();
     assert_eq!(told(-0.02, Some(enough)), NONE);
@@ -526,7 +526,7 @@ fn cells_turned_inside_out_under_cauchy_strain() {
     let crossing =
         Scene::new(body.strain(Strain::Cauchy).thickness(0.01).build().unwrap()).phase(crossing);
     let mut warnings = run(&crossing, &Sampling::every(0.2));
-    warnings.retain(|warning| warning.contains("inside out"));
+    warnings.retain(|warning| warning.contains("cell(s) are inverted"));
     only(&warnings, &["1 cell(s)", "at t = 0.6 s", "cell 2"]);
 }
 

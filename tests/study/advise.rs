@@ -203,7 +203,7 @@ fn what_has_come_to_rest_needs_statics_alone() -> Outcome {
 fn a_law_without_a_motion_is_told() -> Outcome {
     let advice = advise(&beam_jump()?, 0.05)?;
     assert!(advice.law.is_none());
-    let told = "what Green strain changes is not known: it gave no motion";
+    let told = "the effect of Green strain is unknown: it gave no motion";
     assert!(advice.reasons().iter().any(|reason| reason == told), "{advice}");
     Ok(())
 }

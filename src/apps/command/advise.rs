@@ -124,7 +124,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match (write, &advice.enough) {
         (Some(path), Some(_)) => write_scene(scene, &advice, &set, path),
         (Some(_), None) => {
-            Err(Failure::failed("nothing is known to be enough: no scene file is written"))
+            Err(Failure::failed("no model is known to be enough: no scene file is written"))
         }
         (None, _) => Ok(()),
     }

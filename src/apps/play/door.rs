@@ -1,6 +1,6 @@
-//! Which requests are admitted.
+//! Admission of requests.
 //!
-//! The server listens on 127.0.0.1 alone. A request has to name this host and a path with 16 random bytes, a
+//! The server listens on 127.0.0.1 only. A request has to name this host and a path with 16 random bytes, a
 //! WebSocket an origin that is the page's own: neither other users of the machine nor other pages in the
 //! browser have access.
 

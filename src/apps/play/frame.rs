@@ -26,7 +26,7 @@ pub(super) struct Present<'a> {
 pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) -> Value {
     let &Present { simulation, picture, sliders, hand, pace, past, playing, trouble } = present;
     let view = simulation.view();
-    // while it plays nothing waits for what a reduced model tells of its error
+    // while it plays nothing waits for the error estimate of a reduced model
     let report = if playing { simulation.settled_report() } else { simulation.report() };
     let (body, u) = (view.body(), view.displacements());
     let values = sliders.iter().map(|slider| slider.value(simulation));

@@ -1,4 +1,4 @@
-//! As much of HTTP as one page needs.
+//! The subset of HTTP that one page needs.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;

@@ -1,7 +1,7 @@
-//! How fast simulated time advances: as requested, or as fast as the computer can.
+//! Pace of simulated time: as requested, or as fast as the computer can.
 //!
 //! Time advances in portions, as long as requested but of no more than some 20 ms of computing, judged by the
-//! last ones, with answers in between. Time that cannot be computed fast enough is not made up for; the page
+//! last ones, with answers in between. A delay of simulated time is not caught up; the page
 //! shows the real-time factor. Portions and reading do not influence steps.
 
 use std::time::{Duration, Instant};

@@ -1,7 +1,7 @@
 //! The history since the start, for the running chart of the page.
 //!
 //! Energies and sensors are recorded at least every thousandth of the scene and every 5 ms, and a page gets
-//! the records since its last request: charts are equally fine however slow the browser is, and a page that
+//! the records since its last request: charts are independent of the speed of the browser, and a page that
 //! is opened later has all of it.
 
 use serde_json::{Value, json};

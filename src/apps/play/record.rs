@@ -89,7 +89,7 @@ impl Record {
         ))
     }
 
-    /// Moves `target` to `value` at time `t` (s). Returns what acts from then on, including all earlier
+    /// Moves `target` to `value` at time `t` (s). Returns the input from then on, including all earlier
     /// moves.
     pub(super) fn moved(&mut self, scene: &Scene, target: &Target, t: f64, value: f64) -> Input {
         let phases = scene.phases();

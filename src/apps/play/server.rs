@@ -35,7 +35,7 @@ const SCRIPTS: [&str; 2] = [include_str!("page/live.js"), include_str!("page/pla
 const MOST: usize = 32;
 /// The longest message of a page (bytes).
 const LONGEST: usize = 64 * 1024;
-/// How long a browser may take to accept an answer.
+/// Time limit for a browser to accept an answer.
 const PATIENCE: Duration = Duration::from_secs(20);
 /// Default of [`Player::quiet`].
 const QUIET: Duration = Duration::from_secs(10);

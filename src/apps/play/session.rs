@@ -1,4 +1,4 @@
-//! The scene as it is played: time, and what a hand does.
+//! The scene as it is played: time, and the actions of a hand.
 //!
 //! A frame is sent when the page has drawn the one before, so that a slow browser or a slow scene delays
 //! nobody else and no queue builds up.
@@ -42,7 +42,7 @@ pub(super) struct Session {
     playing: bool,
     pace: Pace,
     past: Past,
-    /// Why time has stopped.
+    /// Reason for which time has stopped.
     trouble: Option<String>,
     start: Checkpoint,
     record: Record,

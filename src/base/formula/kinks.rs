@@ -1,4 +1,4 @@
-//! Where a formula has kinks and jumps, and the terms that it is a sum of.
+//! Kinks and jumps of a formula, and the terms of its sum.
 
 use std::ops::Range;
 

@@ -1,9 +1,9 @@
-//! Curved walls of one layer of cells, which are too stiff where cells are large beside sqrt(R t), the length over which a shell
+//! Curved walls of one layer of cells, which are too stiff where cells are large relative to sqrt(R t), the length over which a shell
 //! of the radius R and the thickness t bends at its edges.
 //!
 //! A curved cell cannot bend without being stretched (membrane locking; H. Stolarski, T. Belytschko, Journal of Applied Mechanics 49
 //! (1982) 172-176), by an amount that goes by l = h^2/(R t), h its length along the curve. As the rise of its arc over the chord
-//! is s = h^2/(8 R), this is l = 8 s/t, which each cell tells by itself.
+//! is s = h^2/(8 R), this is l = 8 s/t, computed from each cell separately.
 
 use nalgebra::Vector3;
 
@@ -23,7 +23,7 @@ const STIFFER: f64 = 0.07;
 /// Cells of a smaller one are straight.
 const ROUND_OFF: f64 = 1e-6;
 
-/// How far the cells of curved walls of one layer are arched, beside their thickness.
+/// Rise of the cells of curved walls of one layer, relative to their thickness.
 pub(super) fn arched(body: &Body) -> Option<Indicator> {
     let (most, across) = largest(body)?;
     let said = format!(

@@ -1,4 +1,4 @@
-//! By how much quadrilaterals and hexahedra that bend are too stiff, of which the jumps of their strains show a part.
+//! Excess stiffness of quadrilaterals and hexahedra in bending, which the jumps of their strains show in part.
 //!
 //! A beam along x of n layers of square cells bends by the curvature k about z (y across). Their shape functions have its strain
 //! e_x = k y, and e_z = -b y in space, but e_y = -g y_m alone, with the middle y_m of the cell, and the shears k x and b z from the

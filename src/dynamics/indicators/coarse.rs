@@ -1,4 +1,4 @@
-//! Whether the cells are fine enough for the strains that they show.
+//! Resolution of the strains by the cells.
 //!
 //! Zienkiewicz and Zhu's estimate compares strains with their means at the nodes; the fraction p of the
 //! strain energy in the difference makes the body 1/(1 - p) times too stiff (0.8 to 1 of the true factor on

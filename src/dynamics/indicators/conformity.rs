@@ -1,4 +1,4 @@
-//! Whether cells meet in whole faces: hanging nodes, and nodes in the same position that are not one.
+//! Conformity of a mesh, whose cells meet in whole faces: hanging nodes, and separate nodes in the same position.
 
 use super::size::least_cell_lengths;
 use crate::base::grid::Grid;

@@ -18,13 +18,13 @@ use crate::scene::timeline::Phase;
 
 /// Largest creep relative to the distance that nodes travel, ...
 const MOST_CREEP: f64 = 0.01;
-/// ... or to this part of the size of the body where that is more.
+/// ... or to this fraction of the size of the body where that is more.
 const LEAST_WAY: f64 = 0.01;
 
 /// The creep on an obstacle, or where bodies touch.
 #[derive(Default)]
 struct Creep {
-    /// By the nodes and shares of each point.
+    /// By the nodes and weights of each point.
     points: BTreeMap<Vec<(usize, u64)>, Crept>,
     sticking_speed: f64,
 }
@@ -113,13 +113,13 @@ fn told(name: &str, creep: &Creep, way: f64) -> Option<Indicator> {
     let mean = creep.mean()?;
     let part = mean / way;
     let said = format!(
-        "what friction holds at {name} creeps by {mean:.1e} m, {} of the way that nodes go (limit: {})",
+        "surfaces that stick by friction at {name} creep by {mean:.1e} m, {} of the travel of nodes (limit: {})",
         percent(part),
         percent(MOST_CREEP)
     );
     let beyond = || {
         format!(
-            "{said}: it slides where it should stick; lower sticking_speed from {} m/s to {:.0e} m/s",
+            "{said}: they slide where they should stick; lower sticking_speed from {} m/s to {:.0e} m/s",
             short(creep.sticking_speed),
             creep.sticking_speed * MOST_CREEP / part
         )

@@ -1,4 +1,4 @@
-//! How much cells are strained and rotated, and what that means for the material law.
+//! Strains and rotations of cells, and their consequences for the material law.
 //!
 //! The rotation of a cell is the one nearest to its mean deformation gradient. St. Venant-Kirchhoff's stress
 //! differs from that of incompressible neo-Hookean rubber by 2.5 times the strain, Hooke's by the strain.

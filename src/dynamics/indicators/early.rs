@@ -4,7 +4,7 @@ use crate::base::input::four_digits;
 use crate::dynamics::report::Indicator;
 use crate::scene::timeline::Scene;
 
-/// How many there are, and what the first does.
+/// Their number, and a description of the first.
 pub(super) fn tables(scene: &Scene) -> Option<Indicator> {
     let early = scene.early_tables();
     let first = early.first()?;
@@ -39,7 +39,7 @@ mod tests {
         tables(&scene).into_iter().map(|told| told.text).collect()
     }
 
-    /// A table of the times within its phase, taken for those since the start of the run, is told; one that goes on where the last
+    /// A table of the times within its phase, mistaken for those since the start of the run, is reported; one that continues the last
     /// phase ended, or begins within its phase, is not.
     #[test]
     fn tables_that_are_over_are_told() {

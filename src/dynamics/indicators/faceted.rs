@@ -1,6 +1,6 @@
-//! Meshes of files whose straight edges and flat faces stand for curved ones.
+//! Meshes of files whose straight edges and flat faces approximate curved ones.
 //!
-//! Facets, of faces that lie in one plane, that turn by the angle theta from one to the next stand for an arc of the radius h/theta,
+//! Facets, of faces that lie in one plane, with the angle theta from one to the next represent an arc of the radius h/theta,
 //! h their width. The area between arc and facet is theta^2/6 of the sector, from sin(theta)/theta of a polygon. Halving such cells keeps
 //! the polygon, so that no finer mesh shows this error.
 
@@ -16,9 +16,9 @@ use crate::elements::body::Body;
 use crate::elements::mesh::Mesh;
 use crate::scene::forces::natural;
 
-/// Largest part of what curved faces enclose that may lie between them and facets.
+/// Largest fraction of the area within curved faces that may lie between them and facets.
 const MOST_LACKING: f64 = 0.02;
-/// Angles (rad) between facets from which they are two, and from which they stand for themselves: those of an octagon.
+/// Angles (rad) between facets from which they are separate, and from which they represent no arc: those of an octagon.
 const FLAT: f64 = 0.01;
 const SHARP: f64 = 0.7;
 /// Facets of an arc turn by angles that differ by this factor at most.
@@ -31,7 +31,7 @@ struct Ridge {
     turn: f64,
     /// Its length (m); 1 in the plane.
     length: f64,
-    /// How wide the faces are (m), at right angles to it.
+    /// Width of the faces (m), at right angles to it.
     widths: [f64; 2],
 }
 
@@ -43,8 +43,8 @@ pub(super) fn faceted(body: &Body) -> Option<Indicator> {
     }
     let (part, turn) = lacking(mesh)?;
     let said = format!(
-        "straight cells stand for curved ones: facets that turn by {:.0} degrees from one to the next leave out about {} of what such \
-         curves enclose (limit: {})",
+        "straight cells approximate curves: facets with angles of {:.0} degrees between them lack about {} of the area or volume within \
+         such curves (limit: {})",
         turn.to_degrees(),
         percent(part),
         percent(MOST_LACKING)
@@ -52,7 +52,7 @@ pub(super) fn faceted(body: &Body) -> Option<Indicator> {
     let beyond = || {
         let finer = (part / MOST_LACKING).sqrt();
         format!(
-            "{said}, which no halving of cells mends: make the file with cells {finer:.1} times as fine along the curves, or quadratic \
+            "{said}; halving cells does not reduce it: make the file with cells {finer:.1} times as fine along the curves, or quadratic \
              ones (in Gmsh: Mesh.ElementOrder = 2)"
         )
     };
@@ -60,7 +60,7 @@ pub(super) fn faceted(body: &Body) -> Option<Indicator> {
     Some(Indicator::trusted("facets", (part, "1"), limits, || said.clone(), beyond))
 }
 
-/// The part of what arcs enclose that lies between them and their facets, and by how much (rad) these turn; `None` without arcs.
+/// The fraction of the area within arcs that lies between them and their facets, and the angle (rad) between facets; `None` without arcs.
 fn lacking(mesh: &Mesh) -> Option<(f64, f64)> {
     let faces = mesh.boundary_faces();
     let ridges = ridges(mesh, &faces);
@@ -86,7 +86,7 @@ fn lacking(mesh: &Mesh) -> Option<(f64, f64)> {
     let (mut lacks, mut encloses, mut turning, mut length) = (0.0, 0.0, 0.0, 0.0);
     for ridge in bent().filter(is_of_arc) {
         for width in ridge.widths {
-            // half of what lies between, and half of the sector
+            // half of the area between, and half of the sector
             lacks += ridge.length * ridge.turn * width * width / 24.0;
             encloses += ridge.length * width * width / ridge.turn / 4.0;
         }
@@ -116,7 +116,7 @@ fn facets(faces: usize, ridges: &[Ridge]) -> Vec<usize> {
 /// A face at one of its sides: its number, the direction into it, and how wide (m) it is from there.
 type Side = (usize, Vector3<f64>, f64);
 
-/// Where exactly two faces meet.
+/// An edge where exactly two faces meet.
 fn ridges(mesh: &Mesh, faces: &[Vec<usize>]) -> Vec<Ridge> {
     let mut sides = BTreeMap::<[usize; 2], Vec<Side>>::new();
     let at = |node: usize| Vector3::from(natural(mesh, node));
@@ -170,7 +170,7 @@ mod tests {
     use super::*;
     use crate::elements::mesh::{Cells, SolidCells};
 
-    /// Polygons, whose area is sin(theta)/theta of that of the sector, prisms of them, and what has no arcs.
+    /// Polygons, whose area is sin(theta)/theta of that of the sector, prisms of them, and shapes without arcs.
     #[test]
     fn polygons_lack_what_their_angles_say() {
         for around in [12, 24] {

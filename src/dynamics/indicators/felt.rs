@@ -47,7 +47,7 @@ pub(super) fn friction(trajectory: &Trajectory, samples: &[&Sample]) -> Option<I
         percent(part),
         percent(FELT)
     );
-    let enough = || format!("{said}: smooth obstacles would do");
+    let enough = || format!("{said}: obstacles without friction suffice");
     Some(Indicator::needed("friction", (part, "1"), FELT, || said.clone(), enough))
 }
 
@@ -65,7 +65,7 @@ fn forces(trajectory: &Trajectory, sample: &Sample) -> Result<[Vec<f64>; 2], Inp
     Ok([of(&rough)?, of(&smooth)?])
 }
 
-/// How deep nodes are in obstacles, relative to the distance that nodes travel.
+/// Depth of nodes in obstacles, relative to the distance that nodes travel.
 pub(super) fn depth(
     trajectory: &Trajectory,
     samples: &[&Sample],
@@ -84,7 +84,7 @@ pub(super) fn depth(
         percent(part),
         percent(MOST_DEPTH)
     );
-    let beyond = || format!("{said}: it gives way where it should not; raise its stiffness");
+    let beyond = || format!("{said}: it is too soft; raise its stiffness");
     let limits = [0.0, MOST_DEPTH];
     Some(Indicator::trusted("depth-of-way", (part, "1"), limits, || said.clone(), beyond))
 }

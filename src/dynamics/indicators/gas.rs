@@ -1,4 +1,4 @@
-//! Whether the numbers of gas are absolute pressures, and conductances of orifices in their unit.
+//! Checks of the numbers of gas: pressures that are not absolute, conductances of orifices in a wrong unit.
 
 use super::units::as_meant;
 use crate::base::input::four_digits;
@@ -10,7 +10,7 @@ use crate::scene::timeline::{Phase, Scene};
 const LEAST: f64 = 5e4;
 /// Largest area of a hole, relative to a face of a cube as large as the chamber.
 const WIDEST: f64 = 1.0;
-/// Times of a phase at which supplies are looked at.
+/// Number of times of a phase at which supplies are checked.
 const LOOKS: u32 = 20;
 
 /// The indicators of gas, if there is any; those that the scene declares as [meant](Scene::unusual) count as within their limits.
@@ -49,7 +49,7 @@ fn least(scene: &Scene, signal: &Signal) -> f64 {
     times.map(|t| signal.at(t)).fold(f64::INFINITY, f64::min)
 }
 
-/// The orifice that is largest beside a chamber at one of its ends.
+/// The orifice that is largest relative to a chamber at one of its ends.
 fn area(scene: &Scene) -> Option<Indicator> {
     let gases = scene.filled().ok()?;
     let phase = scene.first_phase().ok()?;
@@ -67,7 +67,7 @@ fn area(scene: &Scene) -> Option<Indicator> {
     }
     let (part, area, name) = widest?;
     let said = format!(
-        "orifice \"{name}\" lets pass what a hole of {} m^2 does, {} times a face of a cube as large as the chamber (limit: {WIDEST})",
+        "orifice \"{name}\" has the flow of a hole of {} m^2, {} times a face of a cube as large as the chamber (limit: {WIDEST})",
         four_digits(area),
         four_digits(part)
     );

@@ -1,13 +1,13 @@
-//! Rods whose path turns within an element by more than their section allows.
+//! Rods whose curvature within an element is too large for their section.
 
 use crate::base::input::{four_digits, short};
 use crate::dynamics::report::Indicator;
 use crate::elements::body::Body;
 
-/// How far a section may reach, over the radius of curvature in an element: to where it meets that beside it.
+/// Largest reach of a section over the radius of curvature in an element: beyond it adjacent sections intersect.
 const MOST: f64 = 1.0;
 
-/// Sections beside each other that overlap, in a single body that is a rod.
+/// Adjacent sections that overlap, in a single body that is a rod.
 pub(super) fn kinked(body: &Body) -> Option<Indicator> {
     let bend = body.sharpest_bend()?;
     let value = bend.reach * bend.angle / bend.length;

@@ -1,4 +1,4 @@
-//! Checks of a body before it moves: its cells and its pieces.
+//! Checks of a body before a run: its cells and its pieces.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,5 @@
 //! Indicators: numbers measured on a scene and on its motion, each with the limit beyond which the result is
-//! doubtful, and what to do then. They are evaluated before a run or after it, never during it, but for depths in
+//! doubtful, and the remedy. They are evaluated before a run or after it, never during it, except for depths in
 //! obstacles, which [`penetration`] follows from step to step.
 //!
 //! | indicator | limit |
@@ -8,42 +8,42 @@
 //! | [`units`]: density, modulus (of rubber) | 5 to 25,000 kg/m^3, 2e12 Pa (1e8 Pa) |
 //! | [`units`]: thickness over size; strain of a column under its own weight | 20; 100 % |
 //! | [`units`]: remanence of magnets, magnetic field, limits of inputs of devices | 2 T, 10 T, 1e4 A m^2 |
-//! | [`gas`]: least absolute pressure; orifices beside their chambers | 5e4 Pa; a face of a cube as large |
+//! | [`gas`]: least absolute pressure; orifices relative to their chambers | 5e4 Pa; a face of a cube as large |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
-//! | [`mesh`]: pieces that nothing joins | one piece |
-//! | [`arched`]: cells of curved walls of one layer, beside sqrt(R t) | 1 |
+//! | [`mesh`]: separate pieces | one piece |
+//! | [`arched`]: cells of curved walls of one layer, relative to sqrt(R t) | 1 |
 //! | [`kinked`]: reach of a rod's section over the radius of curvature in an element | 1 |
-//! | [`faceted`]: what facets of a mesh from a file leave out of the curves that they stand for | 2 % |
-//! | [`conformity`]: hanging nodes, and nodes in the same position that are not one | none |
-//! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
-//! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
-//! | [`strain`]: cells turned inside out under Cauchy strain | none |
-//! | [`coarse`]: how much too stiff linear cells are for the strains that they show | 1.25 times; quadrilaterals and hexahedra 1.1 times |
+//! | [`faceted`]: error of the facets of a mesh from a file that approximate curves | 2 % |
+//! | [`conformity`]: hanging nodes, and separate nodes in the same position | none |
+//! | [`overlap`]: depth of overlaps of the body with itself, at the start and in motion | a twentieth of a cell |
+//! | [`strain`]: rotation of cells under Cauchy strain | 10 degrees |
+//! | [`strain`]: inverted cells under Cauchy strain | none |
+//! | [`coarse`]: excess stiffness of linear cells at their strains | 1.25 times; quadrilaterals and hexahedra 1.1 times |
 //! | [`early`]: tables that end before their phase, and act as a step | none |
 //! | [`pressed`]: energy of bodies that begin within the distance of their touch | 3 times that of bodies that lie on each other |
-//! | [`touch`]: how deep nodes are inside obstacles, at the start and later | half a cell, 2 % of the body; half of the thickness of the body, a quarter of that of the obstacle |
-//! | [`touch`]: points that went past the middle of an obstacle | none |
-//! | [`touch`]: how deep the surface between nodes is inside obstacles | as nodes |
-//! | [`touch`]: friction where bodies or obstacles touch in statics, where it does not act | none |
+//! | [`touch`]: depth of nodes inside obstacles, at the start and later | half a cell, 2 % of the body; half of the thickness of the body, a quarter of that of the obstacle |
+//! | [`touch`]: points that passed the middle of an obstacle | none |
+//! | [`touch`]: depth of the surface between nodes inside obstacles | as nodes |
+//! | [`touch`]: friction of bodies or obstacles in statics, where it does not act | none |
 //! | [`touch`]: obstacles that act and are never touched | none |
-//! | [`creep`]: how far surfaces creep that friction holds | 1 % of the distance that nodes travel |
-//! | [`start`]: unknowns that the scene or the state from which it starts does not have | none |
+//! | [`creep`]: creep of surfaces that stick by friction | 1 % of the distance that nodes travel |
+//! | [`start`]: unknowns that the scene or its initial state lacks | none |
 //! | [`chamber`]: the least volume of a chamber | 0 |
 //! | [`pace`]: absolute tolerance of displacements | 1 % of the distance that nodes travel, or 10 `rtol` |
 //! | [`pace`]: drift of constraints after the starts of phases | 0.1 % of the distance that nodes travel |
-//! | [`pace`]: how far paths begin away from their nodes | 1 % of the distance that nodes travel |
-//! | [`reduced`]: the error that a run by a reduced model tells | twice what was wanted |
-//! | [`reduced`]: how far it was outside of what the model has learned | 5 % of the range |
+//! | [`pace`]: distance of the beginnings of paths from their nodes | 1 % of the distance that nodes travel |
+//! | [`reduced`]: estimated error of a run by a reduced model | twice the requested error |
+//! | [`reduced`]: distance outside the training range of the model | 5 % of the range |
 //!
 //! These are measured at the end of each run, and before it if they need no motion. Others take longer, or do
 //! not cause a warning by themselves: [`Trajectory::indicators`], `pliant check --look`. (+) means that a
-//! simpler model would do below the limit.
+//! simpler model suffices below the limit.
 //!
 //! | indicator | limit |
 //! | --- | --- |
 //! | [`deformed`]: largest strain, by which the stress of a law differs from rubber's | 10 % (Green), 25 % (Cauchy) |
-//! | [`deformed`]: what Cauchy strain would get wrong in a body with Green's (+) | 1 % of the strains |
-//! | [`deformed`]: turn of cells relative to the body; [`shape`]: slenderness | |
+//! | [`deformed`]: error of Cauchy strain in place of Green's (+) | 1 % of the strains |
+//! | [`deformed`]: rotation of cells relative to the body; [`shape`]: slenderness | |
 //! | [`shape`]: layers of cells across a slender body that bends | 4 of simplices, 2 of others, 1 quadratic |
 //! | [`waves`]: cells in a wavelength of the motion | 6 linear, 3 quadratic |
 //! | [`points`]: single nodes that are loaded or held so much that the mesh matters | none |
@@ -51,11 +51,11 @@
 //! | [`felt`]: depth in obstacles | 10 % of the distance that nodes travel |
 //! | [`felt`]: forces of friction (+) | 1 % of the normal forces |
 //! | [`pace`]: kinetic energy (+) | 1 % of the stored energy |
-//! | [`pace`]: damping of the lowest vibration, and how much faster the fastest motion of the mesh is | |
-//! | [`symmetry`]: how far the motion is from one in a plane (+) | 1 % |
-//! | [`symmetry`]: how far the motion is from its mirror images (+) | 0.1 % |
+//! | [`pace`]: damping of the lowest vibration, and ratio of the fastest motion of the mesh to it | |
+//! | [`symmetry`]: deviation from a plane motion (+) | 1 % |
+//! | [`symmetry`]: deviation from the mirror images (+) | 0.1 % |
 //!
-//! Samples are looked at, 200 at most and fewer on large meshes, so that the measurement has no influence on
+//! They are evaluated at 200 samples at most, fewer on large meshes, so that they have no influence on
 //! steps and results. An obstacle counts as never touched only if the body was farther from it at all samples
 //! than it can have come nearer in between, by its largest speed and gravity. Rotations and wavelengths are
 //! relative to the motion of the body as a whole: the rotation by Kabsch, the spin by the angular momentum.
@@ -218,7 +218,7 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }
 
-/// Indicators of how far an equilibrium can be trusted, or the last one on the way to it.
+/// Indicators of the reliability of an equilibrium, or of the last one before a failure.
 pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Indicator> {
     let samples = [trajectory.last()];
     let meetings = touch::meetings(trajectory, &samples);

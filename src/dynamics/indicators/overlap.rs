@@ -1,4 +1,4 @@
-//! Whether a body passes through itself, or pieces of it through each other.
+//! Passage of a body through itself, or of its pieces through each other.
 //!
 //! A point within a cell that has no node in common with its own has a second position in the undeformed
 //! body. Points are sorted into a grid (`base/grid.rs`), and the map of the cells is inverted for those in
@@ -18,7 +18,7 @@ use crate::elements::mesh::CellKind;
 use crate::scene::forces::{SurfacePoint, Touch, natural, pieces};
 use crate::scene::timeline::Scene;
 
-/// How deep a point of the boundary may be within a cell of another part of the body, relative to the size of
+/// Largest depth of a point of the boundary within a cell of another part of the body, relative to the size of
 /// the cell: faces that slide along each other, as those of a slit do, are no smoother than that where cells
 /// turn by 20 degrees.
 const MOST_OF_CELL: f64 = 0.05;
@@ -145,7 +145,7 @@ impl<'a> Overlaps<'a> {
         met.into_iter().map(entry).collect()
     }
 
-    /// The distance (m) of a place in a cell from its undeformed faces, which are taken as flat between their nodes.
+    /// The distance (m) of a point in a cell from its undeformed faces, assumed flat between their nodes.
     fn depth_in_cell(&self, cell: usize, x: &[f64; 3]) -> f64 {
         let (mesh, (kind, nodes)) = (self.body.mesh(), self.cells[cell]);
         let faces = kind.faces().iter().map(|face| face.iter().map(|&k| nodes[k]).collect());

@@ -1,5 +1,5 @@
-//! How fast and how large a motion is: whether statics would do, what its vibrations mean for the choice of a
-//! method, and whether tolerances are fine enough for it.
+//! Speed and size of a motion: whether statics suffice, the consequences of its vibrations for the choice of a
+//! method, and whether tolerances are fine enough.
 
 use super::rigid::travel;
 use crate::base::input::{four_digits, percent, short};
@@ -26,7 +26,7 @@ const REST: f64 = 1e-9;
 const LASTING: f64 = 0.006;
 const CREEPING: f64 = 1.0;
 
-/// Whether equilibria would do.
+/// Whether equilibria suffice.
 pub(super) fn inertia(samples: &[&Sample]) -> Option<Indicator> {
     let largest =
         |energy: fn(&Sample) -> f64| samples.iter().map(|s| energy(s)).fold(0.0, f64::max);
@@ -43,14 +43,14 @@ pub(super) fn inertia(samples: &[&Sample]) -> Option<Indicator> {
     );
     let enough = || {
         format!(
-            "{said}: inertia hardly acts; where friction and viscosity do not matter either, equilibria (`pliant static`) \
-             would do"
+            "{said}: inertia is negligible; where friction and viscosity are negligible, too, equilibria (`pliant static`) \
+             suffice"
         )
     };
     Some(Indicator::needed("kinetic-energy", (part, "1"), STATIC, || said.clone(), enough))
 }
 
-/// How fast and how damped the vibrations of the longest phase are.
+/// Frequencies and damping of the vibrations of the longest phase.
 pub(super) fn vibrations(scene: &Scene) -> Vec<Indicator> {
     let Ok(spectra) = scene.spectrum() else { return Vec::new() };
     let starts = [0.0].into_iter().chain(scene.phases().iter().map(|phase| phase.end()));
@@ -63,10 +63,12 @@ pub(super) fn vibrations(scene: &Scene) -> Vec<Indicator> {
     let (name, damping) = (phase.name(), spectrum.lowest_damping_ratio);
     let then = match damping {
         _ if damping < LASTING => {
-            "it goes on for many periods, and wants a method that does not damp (arkode, rk)"
+            "it lasts for many periods, and needs a method without numerical damping (arkode, rk)"
         }
-        _ if damping < CREEPING => "it dies out, and a method that damps a little (bdf) does",
-        _ => "nothing vibrates freely, the body creeps",
+        _ if damping < CREEPING => {
+            "it decays, and a method with slight numerical damping (bdf) suffices"
+        }
+        _ => "overdamped: no free vibrations, the body creeps",
     };
     let lowest = format!(
         "phase \"{name}\": the lowest vibration has a period of {} s and a damping ratio of {}: {then}",
@@ -94,7 +96,7 @@ pub(super) fn drift(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indi
     }
     let part = drift / way;
     let said = format!(
-        "constraints are off by up to {} m, {} of the way that nodes go (limit: {})",
+        "constraints are violated by up to {} m, {} of the travel of nodes (limit: {})",
         short(drift),
         percent(part),
         percent(MOST_DRIFT)
@@ -120,7 +122,7 @@ pub(super) fn lasting_drift(trajectory: &Trajectory, samples: &[&Sample]) -> Opt
     // of a body at rest both are round-off
     let part = drift / way.max(REST * trajectory.body().size());
     let said = format!(
-        "constraints are still off by {} m after the starts of phases, {} of the way that nodes go (limit: {})",
+        "constraints are still violated by {} m after the starts of phases, {} of the travel of nodes (limit: {})",
         short(drift),
         percent(part),
         percent(MOST_DRIFT)
@@ -128,8 +130,8 @@ pub(super) fn lasting_drift(trajectory: &Trajectory, samples: &[&Sample]) -> Opt
     let beyond = || {
         let of_rigid = match trajectory.body().rigid_pieces() {
             Some(_) => {
-                "; where rigid bodies are held, joined or tied so that one constraint follows from the others and the shape of the bodies, \
-                 leave that one out"
+                "; where a constraint on rigid bodies (held, joined or tied) follows from the others and the shape of the bodies, \
+                 omit it"
             }
             None => "",
         };
@@ -139,7 +141,7 @@ pub(super) fn lasting_drift(trajectory: &Trajectory, samples: &[&Sample]) -> Opt
     Some(Indicator::trusted("lasting-drift", (part, "1"), limits, || said.clone(), beyond))
 }
 
-/// Paths that begin away from their nodes, which are drawn there at once, within some 1/alpha.
+/// Paths that begin away from their nodes, which are drawn there within some 1/alpha.
 pub(super) fn leaps(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Indicator> {
     let way = travel(trajectory.body(), samples).max(REST * trajectory.body().size());
     let indicator = |leap: &Leap| {
@@ -150,8 +152,8 @@ pub(super) fn leaps(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Indicat
             others => format!(" (and {others} more such rows)"),
         };
         let said = format!(
-            "the path of {row} in phase \"{phase}\"{others} begins at {} m where the node is at {} m, at t = {} s: a leap of {} m, {} of \
-             the way that nodes go (limit: {})",
+            "the path of {row} in phase \"{phase}\"{others} begins at {} m where the node is at {} m, at t = {} s: a jump of {} m, {} of \
+             the travel of nodes (limit: {})",
             short(*to),
             short(*from),
             four_digits(*time),
@@ -161,8 +163,8 @@ pub(super) fn leaps(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Indicat
         );
         let beyond = || {
             format!(
-                "{said}; the displacements of a path count from the undeformed place, not from that at the start of the phase: begin it \
-                 with {} m, or take a velocity (`move`), which goes on from there",
+                "{said}; the displacements of a path count from the undeformed position, not from that at the start of the phase: begin \
+                 it with {} m, or use a velocity (`move`), which continues from there",
                 short(*from)
             )
         };
@@ -182,7 +184,7 @@ pub(super) fn tolerance(trajectory: &Trajectory, samples: &[&Sample]) -> Option<
     let (part, most) =
         (tolerance / way, MOST_TOLERANCE.max(TIMES_ASKED * trajectory.report().rtol));
     let said = format!(
-        "displacements have the absolute tolerance {} m, {} of the way that nodes go (limit: {})",
+        "displacements have the absolute tolerance {} m, {} of the travel of nodes (limit: {})",
         short(tolerance),
         percent(part),
         percent(most)

@@ -16,7 +16,7 @@ const MOST_OF_CELL: f64 = 0.5;
 const MOST_OF_BODY: f64 = 0.02;
 /// Part of the thickness of the body.
 const MOST_OF_THICKNESS: f64 = 0.5;
-/// Part of the way to the middle of the obstacle, where forces turn to its other side.
+/// Fraction of the distance to the middle of the obstacle, beyond which forces act towards its other side.
 const MOST_OF_OBSTACLE: f64 = 0.5;
 /// A point between nodes of quadratic faces moves at most this much farther than they do.
 const REACH: f64 = 1.5;
@@ -101,7 +101,7 @@ impl Follower {
         self.clearances.resize(self.points.len() * self.contacts.len(), 0.0);
     }
 
-    /// Adds to `known` what a step shows; `kinetic` returns the kinetic energy (J) at its end.
+    /// Adds the findings of a step to `known`; `kinetic` returns the kinetic energy (J) at its end.
     pub(crate) fn follow(
         &mut self,
         step: &Step,
@@ -150,7 +150,7 @@ impl Follower {
                     own.first_passage.get_or_insert((step.times[1], point.nodes));
                 }
                 if is_node && (is_new && deepest.part() > 1.0 || own.passages == 1 && is_passed) {
-                    // what moves comes to rest within the limit if the springs store its energy there
+                    // a moving body stops within the limit if the springs store its energy there
                     let stored = contact.potential(step.times[1], step.u[1]);
                     let w = obstacle.velocity_at(step.times[1]);
                     let speed = (2.0 * kinetic() / *mass).sqrt() + dot(&w, &w).sqrt();

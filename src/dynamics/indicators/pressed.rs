@@ -1,4 +1,4 @@
-//! Bodies that begin nearer to each other than where their touch sets in.
+//! Bodies that begin nearer to each other than the distance of their touch.
 
 use super::units::as_meant;
 use crate::base::input::four_digits;
@@ -19,7 +19,7 @@ pub(super) fn pressed(scene: &Scene) -> Vec<Indicator> {
 }
 
 /// Bodies that lie on each other have the pressure that carries them, and an energy below weight times distance, as pressures
-/// only grow on the way; what moves or drifts by more than the distance does not notice either.
+/// only grow during the approach; motions or drifts beyond the distance are not affected either.
 fn of_touch(scene: &Scene, force: &TouchForce) -> Option<Indicator> {
     let (body, u) = (scene.body(), scene.initial_displacements());
     let (gap, nodes) = force.nearest(u)?;
@@ -27,7 +27,7 @@ fn of_touch(scene: &Scene, force: &TouchForce) -> Option<Indicator> {
     let distance = force.distance();
     let masses: Vec<f64> = body.parts().map(|part| part.body.mass()).collect();
     let total: f64 = masses.iter().sum();
-    // the heaviest of several is what the others lie on
+    // the heaviest of several supports the others
     let mass = if masses.len() > 1 { total - largest(&masses) } else { total };
     let weight = mass * scene.acceleration().map_or(0.0, norm);
     let drift = mass * distance / scene.end().powi(2);
@@ -38,7 +38,7 @@ fn of_touch(scene: &Scene, force: &TouchForce) -> Option<Indicator> {
     let part = energy / lying;
     let names = nodes.map(|node| body.part_of(node).name);
     let said = format!(
-        "touch \"{}\" begins with {energy:.1e} J, {} times what bodies that lie on each other have (limit: {MOST} times): node {} of \"{}\" and \
+        "touch \"{}\" begins with {energy:.1e} J, {} times the energy of bodies at rest on each other (limit: {MOST} times): node {} of \"{}\" and \
          node {} of \"{}\" are {gap:.1e} m apart, within its distance of {distance:.2e} m",
         force.name,
         four_digits(part),

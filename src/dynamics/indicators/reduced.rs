@@ -3,18 +3,18 @@
 use crate::base::input::percent;
 use crate::dynamics::report::{Indicator, ReducedReport};
 
-/// Multiple of the error that was wanted from which a run is doubtful: what it tells is an estimate.
+/// Multiple of the requested error from which a run is doubtful, as its own error is an estimate.
 const TIMES_WANTED: f64 = 2.0;
-/// Part of the widest range of a shape by which a state may be outside of those learned from.
+/// Fraction of the widest range of a shape by which a state may be outside the training range.
 const MOST_OUTSIDE: f64 = 0.05;
-/// Part of what was wanted by which the error that a run tells may differ from that of the one that the model was learned from, if it is
-/// that run: methods and tolerances may be others.
+/// Fraction of the requested error by which the estimated error of a run may differ from that of the training run, if both are the
+/// same run: methods and tolerances may differ.
 const SAME_RUN: f64 = 0.05;
 
 /// The most keys that are named.
 const MOST_KEYS: usize = 5;
 
-/// The error that the run tells, how far it was outside of what the model has learned, whether that was another run, and keys that it has not learned.
+/// The estimated error, the extrapolation beyond the training range, whether the training run was another one, and keys without training.
 pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
     let limit = TIMES_WANTED * run.within;
     let said = format!(
@@ -27,7 +27,7 @@ pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
     let value = (run.estimated_error, "1");
     let error = Indicator::trusted("reduced-error", value, [0.0, limit], || said.clone(), beyond);
     let said = format!(
-        "the motion is outside of those that the reduced model has learned by {} of their range (limit: {})",
+        "the motion leaves the training range of the reduced model by {} of that range (limit: {})",
         percent(run.outside),
         percent(MOST_OUTSIDE)
     );
@@ -38,14 +38,14 @@ pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
         Indicator::trusted("reduced-range", value, [0.0, MOST_OUTSIDE], || said.clone(), beyond);
     let other = run.apart_from_one_run().map(|apart| {
         let said = format!(
-            "the reduced model was learned from one run, off by {}; this one tells {}",
+            "the reduced model was learned from one run, with an error of {}; the estimated error of this run is {}",
             percent(run.checked_error),
             percent(run.estimated_error)
         );
         let beyond = || {
             format!(
-                "{said}: it is another run, or not all of that, and may be off by many times what it tells: reduce the scene \
-                 over a range (--vary), or have a run such as this one checked (pliant reduce --verify)"
+                "{said}: it is another run, or only a part of that one, and its error may be many times the estimate: reduce the \
+                 scene over a range (--vary), or have such a run checked (pliant reduce --verify)"
             )
         };
         let value = (apart, "1");
@@ -59,8 +59,8 @@ pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
         };
         let beyond = || {
             format!(
-                "the reduced model was not learned over {}{others} (limit: no such key): it may be off by many times the {} that this run \
-                 tells; reduce the scene over a range of these keys (--vary), or have a run such as this one checked (pliant reduce --verify)",
+                "the reduced model was not learned over {}{others} (limit: no such key): its error may be many times the estimated {}; \
+                 reduce the scene over a range of these keys (--vary), or have such a run checked (pliant reduce --verify)",
                 first.join(", "),
                 percent(run.estimated_error)
             )

@@ -1,4 +1,4 @@
-//! The motion of a body as a whole, and what is left without it. Means are over nodes.
+//! The rigid motion of a body, and its motion relative to that. Means are over nodes.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,4 +1,4 @@
-//! How slender a body is, and how many cells lie across its thickness.
+//! Slenderness of a body, and number of cells across its thickness.
 //!
 //! The slenderness is that of the box with the volume and the surface of the body, exact for boxes and nearly
 //! so for rings.
@@ -118,7 +118,7 @@ fn area(mesh: &Mesh, face: &[usize]) -> f64 {
     }
 }
 
-/// How many cells lie across the thickest place. The depth of a node is its distance from the boundary in
+/// Number of cells across the thickest section. The depth of a node is its distance from the boundary in
 /// edges; a cell whose corners all have the largest depth lies in the middle between the two sides.
 fn layers(mesh: &Mesh) -> usize {
     let kind = mesh.kind();

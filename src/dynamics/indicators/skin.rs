@@ -1,4 +1,4 @@
-//! The boundary of a body that fills its space: points on it, and how deep other points lie below it.
+//! The boundary of a body that fills its space: points on it, and the depth of other points below it.
 
 use std::collections::BTreeMap;
 
@@ -49,7 +49,7 @@ impl<'a> Skin<'a> {
         Self { body, parts, at_nodes, longest, seen: vec![0; mesh.node_count()], searches: 0 }
     }
 
-    /// How deep below the boundary (m) the material point with these `shares` of the nodes of a cell lies:
+    /// Depth below the boundary (m) of the material point with these weights `shares` of the nodes of a cell:
     /// its distance, with nodes at `now`, from the point of the boundary that is nearest to it in the
     /// undeformed shape, within the same piece of the body.
     pub(super) fn depth(&mut self, shares: &[(usize, f64)], now: &[f64]) -> f64 {

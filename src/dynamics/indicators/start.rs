@@ -1,4 +1,4 @@
-//! A state from which a scene starts, and which is of another one.
+//! Initial states that come from another scene.
 
 use crate::dynamics::report::Indicator;
 use crate::scene::timeline::Scene;

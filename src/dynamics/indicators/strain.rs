@@ -1,4 +1,4 @@
-//! Whether the strain measure of the body fits its motion.
+//! Suitability of the strain measure of the body for its motion.
 
 use crate::base::input::four_digits;
 use crate::dynamics::report::Indicator;
@@ -33,7 +33,7 @@ pub(super) fn largest_turn<'a>(body: &Body, displacements: impl Iterator<Item = 
     displacements.flat_map(|u| body.cell_rotations(u)).fold(0.0, f64::max)
 }
 
-/// Cells that are turned inside out, which linear forces do not resist.
+/// Inverted cells, which linear forces do not resist.
 pub(super) fn inversion(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
     if body.strain() != Strain::Cauchy {
         return None;
@@ -48,13 +48,13 @@ pub(super) fn inversion(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
         let nodes = cells.first().and_then(|&cell| body.mesh().cells().nth(cell));
         let nodes: Vec<usize> = nodes.into_iter().flatten().map(|node| node + 1).collect();
         format!(
-            "{} cell(s) are turned inside out at t = {} s, the first of them cell {} (nodes {nodes:?}) (limit: none): Cauchy \
-             strain resists no such thing; use strain = \"green\", push less, or take finer cells there",
+            "{} cell(s) are inverted at t = {} s, the first of them cell {} (nodes {nodes:?}) (limit: none): Cauchy \
+             strain does not resist inversion; use strain = \"green\", smaller loads, or finer cells there",
             cells.len(),
             four_digits(time),
             cells.first().map_or(0, |cell| cell + 1),
         )
     };
-    let within = || "no cell is turned inside out (limit: none)".to_owned();
+    let within = || "no cell is inverted (limit: none)".to_owned();
     Some(Indicator::trusted("inverted-cells", (count as f64, ""), [0.0, 0.0], within, beyond))
 }

@@ -1,5 +1,5 @@
-//! Whether a motion is plane or its own mirror image, so that a body in the plane or half of the body would
-//! do.
+//! Plane motions, and motions that are their own mirror images, for which a body in the plane or half of the body would
+//! suffice.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! How obstacles were met.
+//! Contact with obstacles: depth, passages, and obstacles that are never touched.
 
 use std::ptr;
 
@@ -13,7 +13,7 @@ use crate::scene::timeline::{Phase, Scene};
 /// The name of the indicator of how deep a body begins inside an obstacle.
 pub(super) const START_DEPTH: &str = "start-depth";
 
-/// How near the body came to an obstacle while it acted.
+/// Least distance of the body from an obstacle while it acted.
 pub(super) struct Meeting {
     obstacle: String,
     /// A bound on its speed (m/s) at and between samples.
@@ -38,13 +38,13 @@ impl Meeting {
         self.deepest.is_some() && !self.is_begun_inside
     }
 
-    /// How deep (m) nodes were inside.
+    /// Depth (m) of nodes inside.
     pub(super) fn depth(&self) -> f64 {
         self.deepest.map_or(0.0, |deepest| deepest.depth)
     }
 }
 
-/// How near the body came, at `samples`, to the obstacles that act there.
+/// Least distances of the body, at `samples`, from the obstacles that act there.
 pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meeting> {
     let scene = trajectory.scene();
     if scene.obstacles().is_empty() {
@@ -123,7 +123,7 @@ pub(super) fn depths(scene: &Scene, meetings: &[Meeting]) -> impl Iterator<Item 
     })
 }
 
-/// To what the stiffness of an obstacle would have to be raised, in words, if `stiffer` is a factor that is known.
+/// The required stiffness of an obstacle, in words, if the factor `stiffer` is known.
 fn stiffness(scene: &Scene, name: &str, stiffer: f64) -> String {
     let of = scene.obstacles().iter().find(|obstacle| obstacle.name() == name);
     let Some(obstacle) = of.filter(|_| stiffer > 1.0) else { return String::new() };
@@ -228,7 +228,7 @@ pub(super) fn begun_inside(scene: &Scene) -> Vec<Indicator> {
     contacts.iter().filter_map(of_contact).collect()
 }
 
-/// Obstacles and other bodies that touch and would hold the body by friction, on the way to an equilibrium, where friction does not act.
+/// Obstacles and other bodies that touch and would hold the body by friction, in the search for an equilibrium, where friction does not act.
 pub(super) fn slippery(trajectory: &Trajectory) -> Vec<Indicator> {
     let scene = trajectory.scene();
     let meetings = match scene.obstacles().iter().any(Obstacle::has_friction) {
@@ -280,7 +280,7 @@ pub(super) fn missed(meetings: &[Meeting], reach: Reach) -> impl Iterator<Item =
     })
 }
 
-/// How far a body may move unseen between samples.
+/// Bound of the motion of a body between samples.
 #[derive(Clone, Copy)]
 pub(super) struct Reach {
     /// Longest time between samples (s).
@@ -304,7 +304,7 @@ impl Reach {
         Self { pause, speed: velocities.map(norm).fold(0.0, f64::max) + gravity * pause }
     }
 
-    /// How far the body may come nearer (m) to an obstacle that moves at `speed` (m/s).
+    /// Bound of the approach (m) to an obstacle that moves at `speed` (m/s).
     fn towards(&self, speed: f64) -> f64 {
         self.pause * (self.speed + speed)
     }

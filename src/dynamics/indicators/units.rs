@@ -1,4 +1,4 @@
-//! Whether a scene is in units other than metres, kilograms, seconds and pascals.
+//! Evidence that a scene is in units other than metres, kilograms, seconds and pascals.
 
 use crate::base::input::{four_digits, percent};
 use crate::base::vector::{dot, norm};
@@ -29,7 +29,7 @@ const HEAVIEST_STRAIN: f64 = 1.0;
 /// Largest remanence (T): magnets of neodymium have up to 1.5 T. Largest magnetic field (T): superconducting coils have more.
 const STRONGEST: f64 = 2.0;
 const STRONGEST_FIELD: f64 = 10.0;
-/// Times of a phase at which fields and inputs of devices are looked at.
+/// Number of times of a phase at which fields and inputs of devices are checked.
 const LOOKS: u32 = 20;
 
 /// The indicators of the whole scene.
@@ -75,7 +75,7 @@ fn phases(scene: &Scene) -> impl Iterator<Item = (&Phase, f64)> {
     scene.phases().iter().zip(starts)
 }
 
-/// The times (s) of a phase at which a signal with these breaks is looked at.
+/// The times (s) of a phase at which a signal with these breaks is checked.
 fn looks(phase: &Phase, start: f64, breaks: &[f64]) -> impl Iterator<Item = f64> {
     let part = move |look| start + (phase.end() - start) * f64::from(look) / f64::from(LOOKS);
     (0..=LOOKS).map(part).chain(breaks.iter().copied())
@@ -205,7 +205,7 @@ fn materials(body: &Body) -> Vec<Indicator> {
     all
 }
 
-/// How thick a body in the plane is.
+/// Thickness of a body in the plane.
 fn thickness(body: &Body) -> Option<Indicator> {
     let mesh = body.mesh();
     let (thickness, size) = (body.section(), mesh.size());

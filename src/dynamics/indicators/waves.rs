@@ -1,4 +1,4 @@
-//! Whether the mesh can follow the waves of a motion.
+//! Resolution of the waves of a motion by the mesh.
 //!
 //! A wavelength is 2 pi times the root of the mean square of velocities over that of their changes along
 //! edges of cells, and so in cells; a bar in one mode gets the wavelength of that mode.

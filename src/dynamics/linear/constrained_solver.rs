@@ -1,13 +1,13 @@
 //! The linear systems of a phase, [X -A; -A^T 0] [x; mu] = [f; -d], with X the inertia matrix or
 //! the Newton matrix.
 //!
-//! Nodal rows of A^T are eliminated: their components of x are known at once, and what remains is a Cholesky
+//! Nodal rows of A^T are eliminated: their components of x are known at once, which leaves a Cholesky
 //! solve with the free part of X. General rows, of which there are few, are satisfied by a Schur complement
 //! of the size of their number. Nodes of rigid pieces (`elements/body/rigid.rs`) that move with others, x = W q, are
-//! eliminated as well: what is factorized is W^T X W. Where there are many pieces, they move by their
+//! eliminated as well: the factorized matrix is W^T X W. Many pieces move by their
 //! [rigid motions](super::rigid_motions).
 //!
-//! X may be singular without the general rows: oblique planes of symmetry may be all that holds a body. So
+//! X may be singular without the general rows: a body may be held by oblique planes of symmetry only. So
 //! where X itself is factorized, springs with the stiffness rho of its diagonal are added along the rows g of
 //! single nodes, which fit into its pattern: X + rho g g^T has the same solution where g.x = d, with a
 //! multiplier that is rho d larger.
@@ -50,7 +50,7 @@ pub(crate) struct ConstrainedSolver {
     pub(crate) edges: Option<EdgeSolver>,
     general: GeneralRows,
     springs: Vec<Spring>,
-    /// Entries of the free part, and what the springs add to them.
+    /// Entries of the free part, and contributions of the springs.
     stiffening: Vec<(usize, f64)>,
     /// Right-hand side and solution at the free degrees of freedom.
     work: Vec<f64>,
@@ -58,7 +58,7 @@ pub(crate) struct ConstrainedSolver {
     gathered: Vec<f64>,
 }
 
-/// The free part of X, with what solves its systems.
+/// The free part of X, with the solver of its systems.
 enum Kernel {
     Symmetric(Box<Symmetric>),
     /// Together with edges and general rows.
@@ -95,7 +95,7 @@ impl ConstrainedSolver {
         Self::with_motions(matrices, rows, edges, coupling, false)
     }
 
-    /// For the Newton matrix of a phase, in which rigid pieces that touch feel each other: many of them move by their rigid motions.
+    /// For the Newton matrix of a phase, in which rigid pieces that touch are coupled: many of them are solved by their rigid motions.
     pub(crate) fn of_newton_matrix(
         matrices: &Matrices,
         rows: &[ConstraintRow],
@@ -127,7 +127,7 @@ impl ConstrainedSolver {
         let (mut offsets, mut row_indices) = (vec![0; free.len() + 1], Vec::new());
         let (mut sources, mut border) = (Vec::new(), Vec::new());
         each_source(pattern, dimension, coupling, |source, [row, column]| {
-            // what nodes that move with others add follows below
+            // contributions of dependent nodes follow below
             if is_dependent(row / dimension) || is_dependent(column / dimension) {
                 return;
             }
@@ -287,7 +287,7 @@ impl ConstrainedSolver {
         self.eliminate(false)
     }
 
-    /// Prepares what the general rows and the edges need of the X in force, `definite` or not.
+    /// Prepares the general rows and the edges for the current X, `definite` or not.
     fn eliminate(&mut self, definite: bool) -> Result<(), Indefinite> {
         // rigid motions are not known yet
         let Kernel::Symmetric(symmetric) = &mut self.kernel else { return Ok(()) };
@@ -437,7 +437,7 @@ fn each_source(
                     Coupling::AllAxes => true,
                 };
                 if is_coupled {
-                    // X is symmetric: entry (column, row) stands for (row, column).
+                    // X is symmetric: entry (column, row) is that of (row, column).
                     let source = EntrySource::new(entry, pattern.transposed(entry), axes);
                     visit(source, [node * dimension + axis, column]);
                 }

@@ -1,4 +1,4 @@
-//! Edges that are coupled, directly or by others, with their part of X^-1: what [`EdgeSolver`](super::edge_solver::EdgeSolver) finds multipliers with.
+//! Edges that are coupled, directly or by others, with their part of X^-1, from which [`EdgeSolver`](super::edge_solver::EdgeSolver) finds multipliers.
 
 use std::collections::HashMap;
 
@@ -32,18 +32,18 @@ pub(super) struct Component {
     pub(super) pull: Vec<f64>,
 }
 
-/// Where edges are to be at the end of a step.
+/// Required edges at the end of a step.
 pub(crate) struct Arrival {
-    /// The part of accelerations in displacements at the end of the step (s^2), if lengths are asked for.
+    /// The part of accelerations in displacements at the end of the step (s^2), if lengths are prescribed.
     pub(crate) weight: Option<f64>,
-    /// The edges there without accelerations (m), and what half of the squares of their lengths is to be (m^2).
+    /// The edges there without accelerations (m), and the required halves of the squares of their lengths (m^2).
     pub(crate) starts: Vec<[f64; 3]>,
     pub(crate) halves: Vec<f64>,
     /// Whether no multipliers were found, the last time.
     pub(crate) is_missed: bool,
 }
 
-/// Edges that feel each other through X, with their factorized small matrix.
+/// Edges that are coupled through X, with their factorized small matrix.
 pub(super) struct Piece {
     /// Numbers of edges in the component, and in the list of all.
     pub(super) numbers: Vec<usize>,
@@ -131,7 +131,7 @@ impl Piece {
     }
 }
 
-/// How X and general rows couple the free degrees of freedom.
+/// Coupling of the free degrees of freedom by X and general rows.
 pub(super) struct Coupled<'a> {
     /// The lower triangle of X.
     pub(super) pattern: &'a SymbolicSparseColMat<usize>,
@@ -219,7 +219,7 @@ impl Component {
         }
     }
 
-    /// Finds which edges feel each other, once Z is set.
+    /// Finds the coupled edges, once Z is set.
     pub(super) fn divide(&mut self) {
         let d = self.dimension;
         let feels = |a: usize, b: usize| {

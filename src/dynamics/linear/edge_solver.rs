@@ -1,13 +1,13 @@
 //! Linear systems under the constraints of [edges](super::edges).
 //!
-//! The row G of an edge follows the motion, so that it cannot be eliminated once and for all. With Z = X^-1 E, E the
+//! The row G of an edge depends on the motion, so that it cannot be eliminated once for all steps. With Z = X^-1 E, E the
 //! degrees of freedom of the frames, the multipliers are the solution of the small system
 //!
 //! ```text
 //! (R Z G^T) multipliers = demands
 //! ```
 //!
-//! piece by piece where pieces do not feel each other through X, and with columns of Z that reach as far as X couples
+//! piece by piece where pieces are not coupled through X, and with columns of Z that reach as far as X couples
 //! (`edge_component.rs`). R is G itself with X = M and, with the Newton matrix of
 //! a step of gamma, the derivative of the stabilized constraint,
 //!
@@ -18,14 +18,14 @@
 //! Central differences ask for lengths at the end of a step instead, x.x = 2 halves with x = start + weight (x'' of
 //! the step), which Newton's method finds piece by piece.
 //!
-//! Rows G turn with the piece and are no part of the factorized matrix. Z takes 6 solves per piece for each
-//! factor, 12 in space; the small matrix, 3 x 3 or 6 x 6 for each piece or for several that feel each other
-//! through X, is set up anew as pieces turn. CVODE and ARKODE, which evaluate residuals again, take the edges
+//! Rows G rotate with the piece and are no part of the factorized matrix. Z takes 6 solves per piece for each
+//! factor, 12 in space; the small matrix, 3 x 3 or 6 x 6 for each piece or for several that are coupled
+//! through X, is rebuilt as pieces rotate. CVODE and ARKODE, which evaluate residuals again, take the edges
 //! in R at the trial point: a matrix is kept for many steps, and iterations then converge as if the piece had
 //! not turned. Rosenbrock methods, whose order rests on the Jacobian at the start of a step, take them there.
-//! Forces of the multipliers turn with the edges; their derivative is part of Kt.
+//! Forces of the multipliers rotate with the edges; their derivative is part of Kt.
 //!
-//! A dependent node may have strayed from its frame by round-off, on which no force acts, so that (I - gamma
+//! A dependent node may have drifted from its frame by round-off, on which no force acts, so that (I - gamma
 //! J) x = r says x = r: a Newton step gives it its own residual (`stray`). Without that BDF, which
 //! extrapolates, would let the round-off grow without bound.
 
@@ -36,7 +36,7 @@ use super::symmetric::Symmetric;
 
 /// Solver of systems with X under the constraints of edges.
 pub(crate) struct EdgeSolver {
-    /// R and G of all edges, those that are implied last; the factor of x in R; whether they have been set since this was last asked.
+    /// R and G of all edges, those that are implied last; the factor of x in R; whether they have been set since the last query.
     pub(super) rows: Vec<[f64; 3]>,
     pub(super) factor: f64,
     pub(super) columns: Vec<[f64; 3]>,
@@ -90,7 +90,7 @@ impl EdgeSolver {
         Self::of(edges, components)
     }
 
-    /// Finds Z for the X in force; `z` is room for one column of it.
+    /// Finds Z for the current X; `z` is a workspace of one column.
     pub(super) fn respond(
         &mut self,
         z: &mut [f64],

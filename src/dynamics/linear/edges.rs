@@ -1,6 +1,6 @@
-//! Rigid pieces keep their shape: the nodes of their frames keep their distances.
+//! Edges of rigid pieces: constant distances between the nodes of their frames.
 //!
-//! The frame of a piece (`elements/body/rigid.rs`) is a simplex, whose 3 edges in the plane, 6 in space, are what rigid
+//! The frame of a piece (`elements/body/rigid.rs`) is a simplex, whose 3 edges in the plane, 6 in space, are the lengths that rigid
 //! motion leaves unchanged (natural coordinates: J. García de Jalón, E. Bayo, "Kinematic and Dynamic Simulation
 //! of Multibody Systems", Springer 1994). An edge x from one node to another, of the length L, is a constraint
 //! that is stabilized like all others,
@@ -9,12 +9,12 @@
 //! g = (x.x - L^2)/2 = 0,   x.x'' = -x'.x' - 2 alpha x.x' - alpha^2 g
 //! ```
 //!
-//! with a multiplier that presses with x at both nodes. `edge_solver.rs` finds the multipliers.
+//! with a multiplier whose force acts along x at both nodes. `edge_solver.rs` finds the multipliers.
 //!
 //! Constraints on nodes of rigid pieces are general rows, written for the independent displacements, even
-//! where they hold one component; those that follow from others because nodes move together are left out
+//! where they hold one component; those that follow from others because nodes move together are omitted
 //! (`scene/constraint/resolve.rs`), and nodes that would have to leave each other are an error. Edges that
-//! follow from what is held and from other edges have no pivot at the start of a phase, and are left out; if
+//! follow from held nodes and from other edges have no pivot at the start of a phase, and are omitted; if
 //! nodes can then be moved apart, the phase is refused (`tears_apart`).
 
 use crate::base::sparse::BlockMatrix;
@@ -59,7 +59,7 @@ pub(crate) fn stabilized(gamma: f64, alpha: f64) -> [f64; 3] {
     [decay * decay, 2.0 * gamma * decay, gamma * gamma]
 }
 
-/// All edges in a state, with what the stabilization requires of them.
+/// All edges in a state, with the requirements of the stabilization.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Edges {
     pub(crate) list: Vec<Edge>,
@@ -221,7 +221,7 @@ impl Edges {
         all.map(move |(edge, rate)| dot(rate, &edge.apart(s, self.dimension)))
     }
 
-    /// x.x'' less what the stabilization requires of it, edge by edge (m^2/s^2).
+    /// x.x'' less its value required by the stabilization, edge by edge (m^2/s^2).
     pub(crate) fn imbalances(&self) -> impl Iterator<Item = f64> {
         let all = self.arms.iter().zip(&self.accelerations).zip(&self.demands);
         all.map(|((x, acceleration), demand)| dot(x, acceleration) - demand)
@@ -262,7 +262,7 @@ impl Edges {
         }
     }
 
-    /// Largest difference of the length of an edge from what it was (m).
+    /// Largest change of the length of an edge (m).
     pub(crate) fn drift(&self, u: &[f64]) -> f64 {
         let drift = |edge: &Edge| (norm(&edge.at(u, self.dimension)) - norm(&edge.natural)).abs();
         self.list.iter().map(drift).fold(0.0, f64::max)

@@ -1,4 +1,4 @@
-//! Where the entries of the matrices of a phase come from.
+//! Sources of the entries of the matrices of a phase.
 
 /// Which entry of the matrices of the body an entry of X comes from. There is one for each entry of X, so it
 /// is kept small.
@@ -21,7 +21,7 @@ impl EntrySource {
         self.entry as usize
     }
 
-    /// Index of the same pair the other way round.
+    /// Index of the transposed pair.
     pub(crate) fn transposed(self) -> usize {
         self.transposed as usize
     }

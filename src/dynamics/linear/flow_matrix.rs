@@ -44,7 +44,7 @@ pub(crate) struct FlowMatrix {
     /// H.
     pub(crate) compliance: Vec<f64>,
     work: Vec<f64>,
-    /// Changes of the volumes, and what follows from them.
+    /// Changes of the volumes, and of the quantities that follow from them.
     volumes: Vec<f64>,
     changes: Vec<f64>,
     /// A column of N^-1 G.
@@ -52,7 +52,7 @@ pub(crate) struct FlowMatrix {
 }
 
 impl FlowMatrix {
-    /// For so many rooms and unknowns of a body with `dofs` displacement components.
+    /// For so many reservoirs and unknowns of a body with `dofs` displacement components.
     pub(crate) fn new([rooms, unknowns]: [usize; 2], dofs: usize) -> Self {
         let square = vec![0.0; rooms * rooms];
         Self {
@@ -89,7 +89,7 @@ impl FlowMatrix {
         }
     }
 
-    /// Whether that room resists: a column of H matters only where C has one.
+    /// Whether that reservoir has a stiffness: a column of H is needed only where C has one.
     pub(crate) fn is_stiff(&self, room: usize) -> bool {
         self.stiffness.chunks(self.rooms).any(|row| row[room] != 0.0)
     }
@@ -160,7 +160,7 @@ impl FlowMatrix {
         }
     }
 
-    /// Changes of the pressures (Pa) of the rooms, after those of the unknowns of the flow were [solved](Self::solve) for, `x`.
+    /// Changes of the pressures (Pa) of the reservoirs, after those of the unknowns of the flow were [solved](Self::solve) for, `x`.
     pub(crate) fn pressure_changes(&self, x: &[f64]) -> impl Iterator<Item = f64> {
         let [stiff, pressing] = &self.derivatives.pressures;
         let by_volumes = stiff.iter().zip(&self.volumes).map(|(stiff, volume)| stiff * volume);

@@ -15,7 +15,7 @@ use crate::scene::constraint::ConstraintRow;
 /// preconditioned by the diagonal.
 pub(super) struct Gradients {
     matrix: Matrix,
-    /// Degrees of freedom that are left out.
+    /// Omitted degrees of freedom.
     fixed: Vec<usize>,
     /// 1 / X_ii
     inverse: Vec<f64>,
@@ -32,7 +32,7 @@ enum Matrix {
     Blocks(BlockMatrix),
 }
 
-/// How an iteration ended.
+/// Result of an iteration.
 pub(super) struct Ended {
     pub(super) iterations: usize,
     pub(super) is_solved: bool,

@@ -1,7 +1,7 @@
 //! The linear systems of a phase.
 //!
 //! The free part of a matrix of half the size of the state, the inertia or the Newton matrix, is factorized, or large solids iterate
-//! with it ([`symmetric`]); what is not symmetric follows by an iteration ([`Skew`]). Constraints ([`ConstrainedSolver`]), edges of rigid pieces ([`edge_solver`]) and what flows
+//! with it ([`symmetric`]); the skew part follows by an iteration ([`Skew`]). Constraints ([`ConstrainedSolver`]), edges of rigid pieces ([`edge_solver`]) and flows
 //! ([`FlowMatrix`]) add systems of the size of their number. Many pieces are eliminated to their [rigid motions](rigid_motions).
 
 mod cholesky;

@@ -1,20 +1,20 @@
 //! Linear systems with X of many rigid pieces, in their rigid motions.
 //!
 //! With x the velocities of a frame, R x = demands leaves its rigid motions, x = T xi + p, where p is a strain ([`Simplex`]) and R T = 0; and
-//! test motions T' with G T' = 0 know nothing of the multipliers of the edges. Together, general rows with the multipliers mu among them,
+//! test motions T' with G T' = 0 eliminate the multipliers of the edges. Together, general rows with the multipliers mu among them,
 //!
 //! ```text
 //! T'^T X T xi - T'^T A mu = T'^T (f - X p),   A^T T xi = d - A^T p
 //! ```
 //!
-//! T and T' differ by the angle of a piece in a step. What is factorized is symmetric, B = T'^T X T' with 6 unknowns a piece, 3 in the plane, as sparse as
-//! pieces touch, and solutions are refined until the equations above hold: in a few rounds, each a product with X and a solve with B.
-//! Motions are those along and about the edges of a piece, so that B stays what it is where pieces turn by themselves, and is kept for
-//! as long as rounds converge. A frame some of whose edges follow from general rows has the strains of these edges as unknowns, too.
+//! T and T' differ by the angle of a piece in a step. The factorized matrix is symmetric, B = T'^T X T' with 6 unknowns per piece, 3 in the plane, as sparse as
+//! the contact graph, and solutions are refined iteratively until the equations above hold: each iteration is a product with X and a solve with B.
+//! Motions are those along and about the edges of a piece, so that B is invariant under rotations of the pieces, and is kept for
+//! as long as the refinement converges. A frame some of whose edges follow from general rows has the strains of these edges as unknowns, too.
 //!
 //! The multiplier of an edge is the work of X x - f - A mu in the strain of this edge.
 //!
-//! Few pieces are solved faster one by one ([`EdgeSolver`]), with a factor of X that serves whatever way they turn.
+//! Few pieces are solved faster one by one ([`EdgeSolver`]), with a factor of X that is independent of their rotation.
 
 use faer::sparse::SymbolicSparseColMat;
 
@@ -33,7 +33,7 @@ pub(super) const MANY: usize = 8;
 
 /// Rounds of refinement at most.
 const MOST_ROUNDS: usize = 20;
-/// A round that leaves more than this of the change before it is slow: B is factorized anew, or there is only round-off left.
+/// Ratio of successive corrections above which refinement is slow: B is factorized again, or only round-off is left.
 const SLOW: f64 = 0.3;
 /// Changes below this, relative to the solution, may be round-off; and a solution that still changes by more than the second is none.
 const SETTLED: [f64; 2] = [1e-9, 1e-3];
@@ -162,7 +162,7 @@ impl RigidMotions {
         self.is_here = false;
     }
 
-    /// Factorizes B at the motions in force, with what general rows need of it.
+    /// Factorizes B at the current motions, with its products for general rows.
     fn factorize(&mut self, general: &mut GeneralRows) -> Result<(), Indefinite> {
         let Self { matrix, groups, blocks, offsets, values, .. } = self;
         blocks.iter().for_each(|block| block.assemble(&matrix.values, groups, offsets, values));

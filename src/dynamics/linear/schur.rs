@@ -1,7 +1,7 @@
 //! The dense Schur complement S of the general rows of a linear system with the matrix X, and its factor.
 //!
-//! S is positive definite where X is. X need not be: what is light and held by a tie alone is turned by the forces of that tie, and X without
-//! the tie knows of nothing that turns it back.
+//! S is positive definite where X is. X need not be: a light body held by a tie only is rotated by the forces of that tie, and X without
+//! the tie has no restoring stiffness.
 
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};

@@ -1,8 +1,8 @@
 //! Motions of the nodes of a simplex, divided into those that are rigid and those that stretch its edges.
 //!
-//! The edges from the first node to the others, e_1 ... e_d, and their dual vectors e^1 ... e^d, e_i.e^j = 1 where i = j and 0 elsewhere, are all
-//! that is needed. Rigid motions are translations along the e_i and turns about them: seen from the simplex they are the same
-//! wherever it turns. Strains move the node i by S_i1 e^1 + ... + S_id e^d with a symmetric S, which is 1:1 with the rates
+//! The edges from the first node to the others, e_1 ... e_d, and their dual vectors e^1 ... e^d, e_i.e^j = 1 where i = j and 0 elsewhere, are
+//! sufficient. Rigid motions are translations along the e_i and rotations about them: relative to the simplex they are the same
+//! in any orientation. Strains move the node i by S_i1 e^1 + ... + S_id e^d with a symmetric S, which is 1:1 with the rates
 //! r = x.x' of the edges,
 //!
 //! ```text
@@ -126,7 +126,7 @@ mod tests {
         rates
     }
 
-    /// Rigid motions leave all lengths, strains have the rates asked for, and forces along edges do the work of those at the nodes; the
+    /// Rigid motions leave all lengths, strains have the requested rates, and forces along edges do the work of those at the nodes; the
     /// numbers are of the size 1, so that round-off is some 1e-16.
     #[test]
     fn motions_are_rigid_and_strains_stretch_as_asked() {

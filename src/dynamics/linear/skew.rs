@@ -1,8 +1,8 @@
 //! The part of a matrix that is not symmetric.
 //!
-//! Friction follows the normal force, and the normal force does not follow friction: N = P + S, with P symmetric and S skew.
-//! P is factorized. Where contact is stiff, S is as large as P, and a step by P alone is none of Newton's. S has few rows, those of what
-//! rubs, so that
+//! Friction depends on the normal force, and the normal force does not depend on friction: N = P + S, with P symmetric and S skew.
+//! P is factorized. Where contact is stiff, S is as large as P, and a step by P alone is not a Newton step. S has few rows, those of points
+//! in friction, so that
 //!
 //! ```text
 //! (I + S P^-1) z = f,   x = P^-1 z
@@ -20,7 +20,7 @@ use crate::scene::constraint::ConstraintRow;
 /// Directions at most; as many rows are solved exactly.
 const MOST: usize = 60;
 
-/// Part of two entries, one the other way round, below which their difference is round-off.
+/// Fraction of two transposed entries below which their difference is round-off.
 const ROUND_OFF: f64 = 1e-12;
 
 /// S, and the directions of its iteration.
@@ -110,7 +110,7 @@ impl Skew {
         self.rows.len().min(MOST)
     }
 
-    /// Size of `f` without what is prescribed.
+    /// Norm of `f` without prescribed components.
     pub(crate) fn size(&self, f: &[f64]) -> f64 {
         let free = f.iter().zip(&self.places).filter(|(_, place)| **place != FIXED);
         free.map(|(f, _)| f * f).sum::<f64>().sqrt()
@@ -176,7 +176,7 @@ impl Skew {
         aim[number + 1].abs()
     }
 
-    /// Finds how much of each direction z has beside f.
+    /// Finds the components of z - f along each direction.
     pub(crate) fn finish(&mut self) {
         let height = self.aim.len();
         for k in (0..self.rotations.len()).rev() {
@@ -189,7 +189,7 @@ impl Skew {
         }
     }
 
-    /// Adds `sign` times what z has beside f.
+    /// Adds `sign` times z - f.
     pub(crate) fn add(&self, sign: f64, f: &mut [f64]) {
         let directions = self.directions.chunks_exact(self.rows.len().max(1));
         for (direction, share) in directions.zip(&self.aim[..self.rotations.len()]) {

@@ -1,9 +1,9 @@
-//! Symmetric systems, solved by what costs less: conjugate gradients or a factor.
+//! Symmetric systems, solved by the cheaper of conjugate gradients and a factor.
 //!
 //! On large solids a factor costs as much as hundreds of iterations, while a Newton matrix M + gamma D +
 //! gamma^2 K with the small gamma of a step that follows the motion needs ten to a hundred of them. How many
 //! is not known beforehand, so iterations are "rented" until they have cost as much as a factor; then the
-//! factor is "bought". Work is counted, not timed: a run does the same whatever else the machine does.
+//! factor is "bought". Work is counted, not timed: a run is independent of the load of the machine.
 //!
 //! Operations of a factorization follow from the symbolic analysis, and solves that it would have saved are
 //! credited. After matrices that needed a factor in spite of the attempt, the amount tried is reduced, down
@@ -29,7 +29,7 @@ const WORTH_ITERATING: f64 = 400.0;
 /// Part of the rent that is always risked.
 const LEAST_TRUST: f64 = 0.1;
 
-/// A symmetric matrix X at the free degrees of freedom, with what solves its systems.
+/// A symmetric matrix X at the free degrees of freedom, with the solvers of its systems.
 pub(super) struct Symmetric {
     matrix: FreeMatrix,
     cholesky: Cholesky,

@@ -11,7 +11,7 @@ use crate::elements::body::{Body, Branches, LinearByCells, RigidPieces};
 use crate::elements::force::Force;
 use crate::elements::material::Substance;
 
-/// Inertia and the constant parts of the tangents. `None` stands for those that are not needed.
+/// Inertia and the constant parts of the tangents. `None` for those that are not needed.
 pub(crate) struct Matrices {
     pub(crate) dimension: usize,
     /// Undeformed positions of the nodes (m), and the size of the body (m).
@@ -82,7 +82,7 @@ impl Matrices {
         matrices.with_pairs(&strangers)
     }
 
-    /// The same matrices with room for some more pairs of nodes, and for the nodes by which those move.
+    /// The same matrices with entries for some more pairs of nodes, and for the nodes by which those move.
     pub(crate) fn with_pairs(&self, pairs: &[[usize; 2]]) -> Self {
         let mut pattern = self.pattern().with_pairs(pairs);
         if let Some(rigid) = &self.rigid {

@@ -1,5 +1,5 @@
-//! The integrator of a phase in all unknowns: created from the settings and used through one interface, whatever form of the
-//! equations it takes.
+//! The integrator of a phase in all unknowns: created from the settings and used through one interface, in any form of the
+//! equations.
 
 use std::mem::take;
 
@@ -88,7 +88,7 @@ where
     }
 }
 
-/// Lets the system keep what it needs of the state that is reached, to interpolate.
+/// Lets the system store the reached state, for interpolation.
 fn keep_end<I: Integrator<System: Form>>(integrator: &mut I) {
     let mut ends = take(Integrator::system_mut(integrator).full_mut().ends_mut());
     let system = Integrator::system(integrator).full();
@@ -113,18 +113,18 @@ pub(super) fn counts<I: Integrator>(integrator: &I, equations: &dyn PhaseSystem)
         contact_events: 0,
         last_step: s.last_step,
         last_order: s.last_order,
-        // where surfaces turn about each other a few are what contact takes
+        // where surfaces rotate about each other contact needs a few
         notice: stabilization(integrator, system).or_else(|| integrator.notice()).or_else(|| {
             let has_met = system.pattern_changes() > 0;
             let few = if has_met { 2 + s.linear_setups as usize / MANY } else { 0 };
-            // where a rigid piece is pressed together, what its edges hold is none of M + gamma^2 Kt
+            // where a rigid piece is compressed, the forces of its edges are not in M + gamma^2 Kt
             let told = if system.has_edges() { 0 } else { indefinite.saturating_sub(few) };
             compression(told)
         }),
     }
 }
 
-/// The rate of what is seen of a double eigenvalue -alpha, over alpha, at most.
+/// Largest observed rate of a double eigenvalue -alpha, over alpha.
 const DOUBLE: f64 = 1.5;
 
 /// A notice if the stabilization of constraints bounds the steps of an explicit method: no motion does.
@@ -362,7 +362,7 @@ fn rosenbrock_options(
 }
 
 fn ida_options(settings: &Settings, tolerances: Vec<f64>, equations: &DaeForm) -> IdaOptions {
-    // What is not marked as differential stays out of the error test: energies and multipliers.
+    // unknowns that are not marked as differential are excluded from the error test: energies and multipliers
     let first_energy = equations.system.layout().energies().start;
     let differential: Vec<bool> = (0..equations.size()).map(|i| i < first_energy).collect();
     let options = IdaOptions::new(settings.rtol, tolerances)

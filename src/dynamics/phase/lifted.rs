@@ -1,4 +1,4 @@
-//! The integrator of a phase that is run by a reduced model: it takes the unknowns of that, and shows all others.
+//! The integrator of a phase by a reduced model: it integrates the unknowns of the model and returns states of all nodes.
 
 use super::integrators::{IntoStepper, counts, ode};
 use super::{Failed, Integrable, Start, Stepper};

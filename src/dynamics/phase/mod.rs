@@ -1,7 +1,7 @@
-//! The equations of a phase as a run takes them, and their integrators.
+//! The equations of a phase in the form of a run, and their integrators.
 //!
 //! Whether a phase is run in all unknowns or by a reduced model is decided in one place, [`Scene::phase_system`]. Each of both
-//! has a file with its integrators, which show a run states of all nodes.
+//! has a file with its integrators, which return states of all nodes.
 
 mod integrators;
 mod lifted;
@@ -25,11 +25,11 @@ pub(crate) trait Integrable: PhaseSystem {
     /// Starts the integrator that the settings name.
     ///
     /// # Errors
-    /// A method that is not for these equations; what the integrator refuses.
+    /// A method that is not for these equations; errors of the integrator.
     fn start(self: Box<Self>, start: &Start) -> Result<Box<dyn Stepper>, Failed>;
 }
 
-/// Where an integrator starts (s), and how.
+/// Start time (s) of an integrator, and kind of start.
 pub(crate) struct Start<'a> {
     pub(crate) settings: &'a Settings,
     pub(crate) atol: &'a AbsoluteTolerances,

@@ -1,4 +1,4 @@
-//! Summary of a scene, phase by phase, and how fast the body can move in each.
+//! Summary of a scene, phase by phase, with the spectrum of the body in each.
 
 use crate::base::input::InputError;
 use crate::dynamics::system::Spectrum;
@@ -33,14 +33,14 @@ pub struct PhaseSummary {
     pub pressurized: Vec<String>,
     /// Names of the obstacles that act.
     pub obstacles: Vec<String>,
-    /// How fast the body can move, in its undeformed shape and at rest.
+    /// Spectrum of the body, in its undeformed shape and at rest.
     pub spectrum: Spectrum,
 }
 
 impl Scene {
-    /// How fast the body can move in each phase, in its undeformed shape and at rest.
+    /// Spectrum of the body in each phase, in its undeformed shape and at rest.
     ///
-    /// It shows what makes a scene stiff, and which method is suitable for it. Orifices count as shut.
+    /// It shows the stiff parts of a scene, and suitable methods. Orifices count as closed.
     ///
     /// ```
     /// let scene = pliant::samples::square_jump(4)?;

@@ -1,12 +1,12 @@
-//! Maxwell branches in a reduced model: what follows their strains are unknowns beside q.
+//! Maxwell branches in a reduced model: their internal strains are unknowns beside q.
 //!
 //! Without a yield stress these are amplitudes of modes of the strain, exactly (`elements/body/branch_modes.rs`), as long as that
 //! is less work. Else they are the strains in all cells: only the displacements couple the strains of two points, so that these are
-//! eliminated point by point, as they are among all unknowns (`elements/body/branches.rs`), and what is left is the dense system
+//! eliminated point by point, as they are among all unknowns (`elements/body/branches.rs`), which leaves the dense system
 //! of q with gamma^2 Psi^T B^T C P B Psi added.
 //!
 //! Modes are used as long as N^2 for all relaxation times is at most an eighth of the work of all cells.
-//! Strains of all cells are written for each state that is shown.
+//! Strains of all cells are written for each returned state.
 
 use super::shapes::Shapes;
 use crate::base::simd::add;
@@ -156,7 +156,7 @@ impl ReducedBranches {
         matches!(self.way, Way::Modes(_))
     }
 
-    /// Updates what is kept of the tangents to the last evaluation.
+    /// Updates the stored tangents to the last evaluation.
     pub(super) fn update_tangents(&mut self) {
         if let Way::Modes(Some(own)) = &mut self.way {
             own.modes.update_tangents();
@@ -189,7 +189,7 @@ impl ReducedBranches {
         }
     }
 
-    /// gamma times the forces along Psi of what the `residuals` of the unknowns pass to the springs.
+    /// gamma times the forces along Psi that the `residuals` of the unknowns cause in the springs.
     pub(super) fn of_residuals(&mut self, residuals: &[f64], shapes: &mut Shapes) -> &[f64] {
         let Self { branches, way, gamma, along, .. } = self;
         along.fill(0.0);

@@ -1,4 +1,4 @@
-//! The dense Newton matrix I + gamma D + gamma^2 K of a reduced model, and the tangents of which it is made.
+//! The dense Newton matrix I + gamma D + gamma^2 K of a reduced model, and the tangents in it.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
@@ -19,7 +19,7 @@ pub(super) struct Tangents {
 /// I + gamma D + gamma^2 K, factorized.
 pub(super) struct Factors {
     pub(super) matrix: Mat<f64>,
-    /// K, with what branches do in such a step.
+    /// K, with the contribution of branches in such a step.
     pub(super) stiffness: Vec<f64>,
     forward: Vec<usize>,
     inverse: Vec<usize>,

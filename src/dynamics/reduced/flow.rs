@@ -1,5 +1,5 @@
 //! Gas and liquids that flow, and actuators that lag, in a reduced model: their amounts are unknowns beside q, all of them,
-//! and what they do at the nodes is seen along the shapes.
+//! and their nodal forces are projected onto the shapes.
 //!
 //! It is the Newton system of `dynamics/linear/flow_matrix.rs` with Phi^T G in place of G. As the matrix is dense, gamma^2 C of the amounts, eliminated, is
 //! added to it.
@@ -18,15 +18,15 @@ use crate::integrators::ode::Failure;
 /// Flow states along the shapes of a reduced model: gas, liquids, lag states and pipe flows.
 pub(super) struct ReducedFlow {
     force: Arc<dyn Force>,
-    /// The amounts at the last evaluation, their rates, and room for as many numbers.
+    /// The amounts at the last evaluation, their rates, and a workspace of the same size.
     amounts: Vec<f64>,
     rates: [Vec<f64>; 2],
     /// The derivatives at the nodes, and along the shapes that are free.
     nodal: FlowDerivatives,
     matrix: FlowMatrix,
-    /// dV/dz of the shapes that constraints move, of one room after the other.
+    /// dV/dz of the shapes that constraints move, of one reservoir after the other.
     moved: Vec<f64>,
-    /// dV/dz of a room.
+    /// dV/dz of a reservoir.
     along: Vec<f64>,
 }
 
@@ -49,7 +49,7 @@ impl ReducedFlow {
     }
 
     /// Brings actuators that lag to the `amounts`, adds the forces of all others under the displacements `u`, and returns the power (W)
-    /// that is supplied with what flows.
+    /// that is supplied with the flow.
     ///
     /// # Errors
     /// As [`Force::add_forces`].
@@ -103,7 +103,7 @@ impl ReducedFlow {
         }
     }
 
-    /// Adds what the amounts resist by to the Newton matrix of a step of the parameter `gamma`.
+    /// Adds the resistance of the amounts to the Newton matrix of a step of the parameter `gamma`.
     pub(super) fn add_stiffness(&mut self, gamma: f64, newton: &mut Mat<f64>) {
         let free = newton.nrows();
         self.matrix.condense(gamma);
@@ -121,7 +121,7 @@ impl ReducedFlow {
         }
     }
 
-    /// Adds what the residuals `ru` and those of the `amounts` do to the right-hand side.
+    /// Adds the effect of the residuals `ru` and of those of the `amounts` to the right-hand side.
     pub(super) fn add_residuals(
         &mut self,
         gamma: f64,

@@ -1,10 +1,10 @@
 //! The equations of a phase by a reduced model, as an ODE: y = (q, q', internal unknowns, energy dissipated, energy supplied).
 //!
-//! [`ReducedSystem`] is another implementation of what a run asks of the equations of a phase (`dynamics/phase/mod.rs`). The
+//! [`ReducedSystem`] is another implementation of the interface of a run to the equations of a phase (`dynamics/phase/mod.rs`). The
 //! run sees states of all nodes (`dynamics/phase/lifted.rs`), so that samples, sensors, events,
-//! commands, checkpoints and forks know nothing of q. u_0 is the state at the start of the phase or after a
-//! command: where a new phase has other shapes nothing is lost but the part of the velocities beyond them,
-//! which is booked as energy supplied. Constraints are part of the shapes (A^T Phi = 0, and E for those that
+//! commands, checkpoints and forks do not depend on q. u_0 is the state at the start of the phase or after a
+//! command: if a new phase has other shapes, only the part of the velocities outside of them is lost,
+//! which is accounted as energy supplied. Constraints are part of the shapes (A^T Phi = 0, and E for those that
 //! move), hold exactly and need no multipliers: those of samples follow from M u'' - f at the held nodes, with the forces of all
 //! cells and the accelerations of the model.
 
@@ -259,7 +259,7 @@ impl PhaseSystem for ReducedSystem {
     }
 }
 
-/// Parts of a phase after which states are looked at: often at first, where what acts has just changed.
+/// Fractions of a phase after which states are checked: often at first, where forces have just changed.
 const CHECKS: [f64; 6] = [0.02, 0.05, 0.12, 0.25, 0.5, 0.8];
 
 /// q, q', internal unknowns and energies of y, or of y' or a residual.

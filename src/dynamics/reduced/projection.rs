@@ -7,8 +7,8 @@
 //! q'' = Phi^T f(t, u_0 + Psi z, Psi z') - Phi^T M E b''
 //! ```
 //!
-//! Forces of constant matrices and steady ones are projected once, and some others are [`GeneralizedForce`]s of z. Each force
-//! left sees and acts on some nodes only, the active ones: displacements of no others are computed for it.
+//! Forces of constant matrices and steady ones are projected once, and some others are [`GeneralizedForce`]s of z. Each other
+//! force depends and acts on some nodes only, the active ones: displacements of no others are computed for it.
 //!
 //! Exact along the shapes are, beside these, forces of St. Venant-Kirchhoff's law
 //! (`elements/body/strain_modes.rs`), with exact tangents and objective viscosity for N^2 multiplications, N
@@ -16,13 +16,13 @@
 //! sample takes about as much and has an error), and of chambers, whose area is a quadratic and whose volume
 //! a cubic function of z (`scene/forces/chamber/generalized.rs`: derivatives by differences, exact for
 //! polynomials). Other elastic forces give a sample of cells with weights (`elements/body/sample.rs`), which
-//! has a potential: the energy balance judges a reduced run as any other. All others name the nodes that they
-//! see (`Force::nodes`); a force that does not makes all nodes active, which costs time and no accuracy.
+//! has a potential: the energy balance checks a reduced run as any other. All others name the nodes on which they
+//! depend (`Force::nodes`); a force that does not makes all nodes active, which costs time, not accuracy.
 //! Cells that grow are active, all of them. The Newton matrix is dense, I + gamma D + gamma^2 K along the
 //! shapes.
 //!
 //! Shapes of a body that nothing holds contain all linear displacements, among them all rotations, and in the
-//! plane each shape turned by a quarter: shapes at any angle are sums of these, and no moving frame is
+//! plane each shape rotated by a quarter turn: shapes at any angle are sums of these, and no moving frame is
 //! needed, which would make M depend on q. In space that would be nine shapes for each one, so only the
 //! linear ones are added.
 
@@ -133,7 +133,7 @@ impl Projection {
         shapes.weigh(|x, y| matrices.add_momentum(1.0, x, y));
         let s = shapes.count();
 
-        // what the forces couple
+        // couplings of the forces
         let mut seen = BTreeSet::new();
         let mut pairs = body.cell_pairs(model.cells.keys().copied());
         let mut is_anywhere = false;
@@ -257,7 +257,7 @@ impl Projection {
                 self.acting.push(force.clone());
             }
         }
-        // cells stay what they are
+        // cells are unchanged
         self.generalize(false);
         let parts = [&steady.conservative, &steady.applied];
         for (sum, force) in self.constant.steady.iter_mut().zip(parts) {

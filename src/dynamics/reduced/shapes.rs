@@ -1,5 +1,5 @@
 //! The shapes of a reduced model as one matrix Psi: those that are free, and behind them those that constraints move. For
-//! the degrees of freedom that forces see, the active ones, there is a copy of their rows.
+//! the active degrees of freedom, on which forces depend, there is a copy of their rows.
 
 use crate::base::simd::add_multiple;
 use crate::base::sparse::BlockMatrix;
@@ -20,7 +20,7 @@ pub(super) struct Shapes {
 #[derive(Default)]
 struct Active {
     dofs: Vec<usize>,
-    /// Where those of a node begin among them, if it has any.
+    /// Index of the first of a node among them, if it has any.
     places: Vec<Option<usize>>,
     /// Their rows of Psi column by column, and row by row.
     columns: Vec<f64>,
@@ -59,7 +59,7 @@ impl Shapes {
         }
     }
 
-    /// Sets what is active: the `dimension` degrees of freedom of each of some `nodes`.
+    /// Sets the active degrees of freedom: the `dimension` ones of each of some `nodes`.
     pub(super) fn activate(&mut self, nodes: impl Iterator<Item = usize>, dimension: usize) {
         let Self { columns, dofs, count, .. } = &*self;
         let mut active = Active { places: vec![None; dofs / dimension], ..Active::default() };
@@ -133,7 +133,7 @@ impl Shapes {
         add_products(&self.columns, f, sum);
     }
 
-    /// sum += Psi^T f for forces f on what is active alone.
+    /// sum += Psi^T f for forces f on active degrees of freedom only.
     pub(super) fn add_projected_active(&mut self, f: &[f64], sum: &mut [f64]) {
         let Active { dofs, columns, room: [own, _], .. } = &mut self.active;
         own.iter_mut().zip(&*dofs).for_each(|(own, &dof)| *own = f[dof]);

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A number measured on a scene or on its motion, with its limits and what to change if it is beyond them.
+/// A number measured on a scene or on its motion, with its limits and the remedy beyond them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Indicator {
     /// Name of the measured quantity: one word, or several joined by hyphens.

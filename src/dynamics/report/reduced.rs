@@ -6,7 +6,7 @@ use std::fmt;
 use crate::base::input::{four_digits, percent};
 use crate::scene::reduced_model::ReducedModel;
 
-/// How a run by a reduced model went.
+/// Results of a run by a reduced model: its estimated error and its range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReducedReport {
     /// Shapes of the phase that has most.
@@ -17,7 +17,7 @@ pub struct ReducedReport {
     pub checked_error: f64,
     /// The error that was wanted of it.
     pub within: f64,
-    /// The error that this run estimates, relative to the largest displacement in it or in these runs: what the forces left over would move, times the ratio of the two in the runs that the
+    /// The error that this run estimates, relative to the largest displacement in it or in these runs: the displacement by the residual forces, times the ratio of the two in the runs that the
     /// model was checked with.
     pub estimated_error: f64,
     /// Extrapolation: distance outside the training range, relative to the largest modal range.
@@ -44,7 +44,7 @@ pub struct SensorErrorEstimate {
     pub name: String,
     /// Its unit.
     pub unit: String,
-    /// The largest error at the times that were looked at, in that unit.
+    /// The largest error at the checked times, in that unit.
     pub error: f64,
 }
 
@@ -81,7 +81,7 @@ impl ReducedReport {
         self.estimated_error = self.per_imbalance * self.imbalance();
     }
 
-    /// Adds by how much an imbalance would change what sensors read.
+    /// Adds the change of sensor readings by an imbalance.
     pub(crate) fn note_changes(&mut self, changes: Vec<SensorErrorEstimate>) {
         for change in changes {
             let error = self.per_imbalance * change.error;
@@ -125,10 +125,10 @@ impl fmt::Display for ReducedReport {
         let (checked, said) = (percent(*checked_error), percent(*estimated_error));
         match self.is_estimate {
             true => {
-                write!(f, "; error {said} as told by this run, checked with none of all unknowns")?
+                write!(f, "; error {said} estimated by this run, not verified with all unknowns")?
             }
             false => {
-                write!(f, "; error {checked} where it was checked, {said} as told by this run")?
+                write!(f, "; error {checked} in its verification, {said} estimated by this run")?
             }
         }
         for SensorErrorEstimate { name, unit, error } in &self.readings {

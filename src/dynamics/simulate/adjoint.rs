@@ -1,4 +1,4 @@
-//! The steps of a run taken back, one after the other: the derivative of a reading at the end by any numbers of the scene.
+//! The discrete adjoint of the steps of a run: the derivative of a reading at the end by any numbers of the scene.
 //!
 //! With the adjoint vectors of all steps held ([`StepAdjoint`]), the derivative of the reading by a number is that of a sum
 //! of values of the equations in the stages that the run had: the Lagrangian of the steps as constraints. So [`Tape::lagrangians`] takes
@@ -58,7 +58,7 @@ impl Tape {
     /// of the run at its start; `read` reads the end.
     ///
     /// # Errors
-    /// Why the steps cannot be taken back.
+    /// The reason for which the adjoint is not available.
     pub(crate) fn lagrangians(
         &self,
         own: [Simulation; 2],
@@ -79,7 +79,7 @@ impl Tape {
     ) -> Result<Vec<f64>, Failed> {
         if own.run.sensors.need_forces() {
             return Err(
-                "readings of forces, accelerations and energies are not taken back yet".into()
+                "adjoint gradients do not yet support readings of forces, accelerations and energies".into()
             );
         }
         let mut phases = self.phases(&mut own.run)?;
@@ -212,7 +212,7 @@ impl Tape {
                 if *is_held && !changes(row.apply(&shift)) {
                     let name = phase.name();
                     return Err(
-                        format!("what turns in phase \"{name}\" is not taken back yet").into()
+                        format!("adjoint gradients do not yet support the rotation prescribed in phase \"{name}\"").into()
                     );
                 }
             }
@@ -278,7 +278,7 @@ impl Phases {
 }
 
 impl Other {
-    /// Adds what the last step that was taken back has of its equations.
+    /// Adds the contribution of the equations of the last step of the adjoint.
     fn add(&mut self, adjoint: &StepAdjoint, step: &TapedStep) -> Result<(), Failed> {
         let [start, end] = self.phases.span(step)?;
         let system = &mut self.phases.systems[step.phase];

@@ -8,7 +8,7 @@
 pub(crate) struct Angles(pub(crate) Vec<(String, f64)>);
 
 impl Angles {
-    /// How many whole turns must be added to an angle of `turns`, known up to whole ones, to be nearest to
+    /// Number of whole turns to be added to an angle of `turns`, known up to whole ones, to be nearest to
     /// the one that was noted. 0 if none was noted.
     pub(super) fn behind(&self, name: &str, turns: f64) -> f64 {
         self.0

@@ -16,7 +16,7 @@ use crate::integrators::ode::Rates;
 use crate::integrators::rk::{REACH, REACH_UNDAMPED};
 use crate::scene::settings::{ContactEvents, Method, Settings};
 
-/// How a phase is integrated from now on.
+/// Method and options of a phase from now on.
 #[derive(Clone)]
 pub(super) struct Plan {
     /// As requested, with the chosen method in place of [`Method::Auto`].
@@ -25,7 +25,7 @@ pub(super) struct Plan {
     pub(super) asked: Settings,
     /// Part of these tolerances that the method is given.
     pub(super) part: f64,
-    /// Why this method, and those before it in the phase, if they were chosen.
+    /// Reasons for this method, and for those before it in the phase, if they were chosen.
     pub(super) reason: Option<String>,
     /// Longest stable steps of explicit Runge-Kutta and, with lumped inertia, of central differences (s).
     pub(super) explicit_step: f64,

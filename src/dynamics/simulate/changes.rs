@@ -64,7 +64,7 @@ impl Run {
             Integration::Running(work) => Ok(work.stepper.system_mut()),
             Integration::Idle(system) => Ok(&mut **system),
             Integration::Absent => {
-                Err(InputError::new("simulation", "without equations", "start it anew").into())
+                Err(InputError::new("simulation", "without equations", "restart it").into())
             }
         }
     }

@@ -25,7 +25,7 @@ pub struct Checkpoint {
     pub(super) kept: Kept,
 }
 
-/// How the motion was computed up to a checkpoint.
+/// Report of the computation up to a checkpoint.
 #[derive(Clone)]
 pub(super) struct Record {
     /// On the phases before, and on the one in force.
@@ -69,7 +69,7 @@ pub(crate) struct Kept {
     pub(crate) number: usize,
     /// Whether commands have changed it.
     pub(crate) is_commanded: bool,
-    /// Where each row of the constraints [starts](crate::scene::constraint::ConstraintRow::origin); none if
+    /// [Origin](crate::scene::constraint::ConstraintRow::origin) of each row of the constraints; none if
     /// that is not known.
     pub(crate) origins: Vec<[f64; 4]>,
     /// Size of the next step (s), if it is known.

@@ -1,4 +1,4 @@
-//! How quantities of a contact are read: its force, the area in touch, the largest pressure.
+//! Readings of a contact: its force, the area in contact, the largest pressure.
 
 use super::reading::ContactSource;
 use super::view::View;

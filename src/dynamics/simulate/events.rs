@@ -47,7 +47,7 @@ pub(super) struct Events {
     changed: Vec<f64>,
     /// Of each switch that changes in a step, |value| at its start; 0 of the others.
     scales: Vec<f64>,
-    /// How far the body can move before a switch can change (see
+    /// Bound of the motion of the body before a switch can change (see
     /// [`crate::elements::force::ContactForce::passage`]).
     clearances: Vec<f64>,
     /// Events found, and those in a row that did not advance time.
@@ -148,7 +148,7 @@ impl Events {
         Ok(met?.1.t)
     }
 
-    /// How far the first of the changing switches is from its change: 1 at the start of the step, below 0 behind the
+    /// Distance of the first changing switch from its change: 1 at the start of the step, below 0 behind the
     /// change.
     fn advance(&self, scales: &[f64], values: &[f64]) -> f64 {
         let mut first = f64::INFINITY;

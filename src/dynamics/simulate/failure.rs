@@ -14,15 +14,14 @@ pub(super) const STANDING: usize = 100;
 const CRAWLING: f64 = 16.0;
 
 pub(super) fn standing_still(refusal: &str) -> Failed {
-    let reason = change_in_no_time(refusal);
-    format!("{STANDING} steps, too small to move time ahead, have not led past this: {reason}")
-        .into()
+    let reason = cause_of_stall(refusal);
+    format!("no progress: {STANDING} steps in a row too small to advance time: {reason}").into()
 }
 
 /// The error of `count` steps up to `time` (s) whose mean size is `step` (s), if that is too small for any
 /// progress.
 pub(super) fn crawling(count: usize, step: f64, time: f64, refusal: &str) -> Option<Failed> {
-    let reason = change_in_no_time(refusal);
+    let reason = cause_of_stall(refusal);
     (step < CRAWLING * f64::EPSILON * time.abs()).then(|| {
         format!(
             "no progress: {count} steps of {step:.1e} s in the mean, close to round-off: {reason}"
@@ -31,12 +30,12 @@ pub(super) fn crawling(count: usize, step: f64, time: f64, refusal: &str) -> Opt
     })
 }
 
-fn change_in_no_time(refusal: &str) -> &str {
+fn cause_of_stall(refusal: &str) -> &str {
     match refusal {
         "" => {
-            "the motion changes without end in no time: a part of the body has collapsed or is driven without end, or a force \
-             has no meaning there (walls that have passed through each other, a contact, spring or load that is far too stiff or \
-             large); look at the last samples, and at what acts near this time"
+            "the motion becomes singular: a part of the body has collapsed or is driven without limit, or a force is undefined \
+             there (walls that have passed through each other, a contact, spring or load that is far too stiff or large); look at \
+             the last samples, and at the forces near this time"
         }
         reason => reason,
     }
@@ -52,7 +51,7 @@ pub(super) fn out_of_time(limit: f64, method: Method, counts: &Counts) -> Failed
     let reason = counts.notice.as_deref().unwrap_or(
         "raise max_time, loosen rtol, choose another method or a coarser mesh, or continue from the state that was reached",
     );
-    format!("it has taken the {limit} s of wall-clock time that max_time allows ({method}, {steps} steps since it last started): {reason}")
+    format!("the {limit} s of wall-clock time that max_time allows are used up ({method}, {steps} steps since the last start): {reason}")
         .into()
 }
 
@@ -81,16 +80,16 @@ pub(super) fn in_mechanics(source: Failed, doom: Option<&str>) -> Failed {
         }
         Cause::ErrorTest | Cause::StandsStill { .. } => (
             "the time step collapsed",
-            "a force changes too suddenly there: look for a contact, spring or damper that is far stiffer than the \
+            "a force changes too abruptly there: look for a contact, spring or damper that is far stiffer than the \
              body, or a load that jumps without a break",
         ),
         Cause::Convergence => (
-            "no balance of forces was found at the end of a step, however short",
+            "no balance of forces was found at the end of a step of any size",
             "the body may buckle or collapse there, or a contact may be far stiffer than the body: lower the load, \
              soften the contact, or try another method",
         ),
         Cause::LinearSolver | Cause::LinearConvergence => (
-            "the equations of a step have no single solution",
+            "the linear equations of a step are singular, or nearly so",
             "look for a part of the body that nothing holds, or a stiffness that is far too large or small",
         ),
         Cause::InconsistentStart => (

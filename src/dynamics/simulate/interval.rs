@@ -25,11 +25,11 @@ pub(super) struct RollbackPoint {
     pub(super) angles: Angles,
     /// The least and the largest reading of each sensor until then.
     pub(super) peaks: Vec<[f64; 2]>,
-    /// How deep the surface had got into obstacles by then.
+    /// Depth of the surface in obstacles until then.
     pub(super) penetrations: Vec<Penetration>,
 }
 
-/// How an interval ended.
+/// End of an interval.
 pub(super) enum Ending {
     /// At its end.
     Reached,
@@ -74,7 +74,7 @@ impl Interval {
         self.times.get(self.taken)
     }
 
-    /// Where it ends, or pauses (s).
+    /// Its end, or a pause (s).
     pub(super) fn end(&self) -> f64 {
         self.inside.unwrap_or(self.stop)
     }

@@ -20,7 +20,7 @@ pub(super) struct PhaseRun {
     pub(super) interval: Interval,
     /// Ends of the intervals that are left (s), the last one first.
     pub(super) stops: Vec<f64>,
-    /// How the last interval ended, once it has.
+    /// End of the last interval, once it has ended.
     pub(super) ended: Option<Ending>,
     /// When (s) it has ended before its time.
     pub(super) cut: Option<f64>,
@@ -52,7 +52,7 @@ pub(super) enum Integration {
 /// An integrator at work on an interval.
 pub(super) struct Running {
     pub(super) stepper: Box<dyn Stepper>,
-    /// Where it stops (s).
+    /// Its stop time (s).
     pub(super) stop: f64,
     /// Room for a state of the integrator.
     pub(super) sample: Vec<f64>,
@@ -63,7 +63,7 @@ pub(super) struct Running {
     pub(super) means: [f64; TRIALS],
 }
 
-/// How an integrator goes on after a change of the forces.
+/// Continuation of an integrator after a change of the forces.
 pub(super) enum GoesOn {
     /// With the step that it had.
     Here,

@@ -22,7 +22,7 @@ pub struct Reading {
     pub(super) in_degrees: bool,
     /// The name of the body that is read; all of them together without one.
     pub(super) body: Option<String>,
-    /// How often each node counts in a mean, in their order; each once without.
+    /// Weight of each node in a mean, in their order; all 1 without.
     pub(super) counts: Option<Box<[usize]>>,
 }
 
@@ -86,7 +86,7 @@ pub(super) struct Lever {
     pub(super) axis: Option<Vec<f64>>,
 }
 
-/// Where a field is read.
+/// Place of the reading of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum FieldPoint {
     Nodes(Selection),
@@ -259,7 +259,7 @@ impl Reading {
         ReadingKind::Angle([from, to].map(|line| line.map(Into::into))).into()
     }
 
-    /// Where the centre of mass of all bodies is, or of one [of them](Self::of_body) (m).
+    /// Position of the centre of mass of all bodies, or of one [of them](Self::of_body) (m).
     pub fn centre_of_mass() -> Self {
         ReadingKind::CentreOfMass.into()
     }
@@ -434,7 +434,7 @@ impl Reading {
                 | ReadingKind::FluidForce(..)
         );
         if let Some(name) = self.body.as_ref().filter(|_| !is_of_bodies) {
-            let help = "the centre of mass, how it turns, the momentum and what a touch or a fluid does are all that is read of a body: name its nodes instead";
+            let help = "a body has readings of its centre of mass, rotation, momentum, touches and fluids only: name its nodes instead";
             return Err(InputError::new("body", format!("\"{name}\""), help));
         }
         // the components that are columns by default, and one more that must be requested

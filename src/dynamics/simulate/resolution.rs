@@ -1,4 +1,4 @@
-//! How long steps may be where loads, pressures, actuation or prescribed motion change with time.
+//! Bounds of steps where loads, pressures, actuation or prescribed motion change with time.
 //!
 //! The error estimate of an integrator knows what acts at the few times at which a step evaluates forces; a pulse between
 //! them does not exist for it. The time up to the next break is therefore halved into cells until in each of
@@ -49,7 +49,7 @@ pub(super) struct Resolution {
     phase: Option<Arc<Phase>>,
     /// Start and end (s).
     span: [f64; 2],
-    /// Where steps end (s): just before a jump at the end.
+    /// End of the steps (s): just before a jump at the end.
     end: f64,
     courses: Vec<Course>,
 }
@@ -83,7 +83,7 @@ impl Resolution {
         Self { courses: courses.collect(), phase: Some(phase.clone()), span, end }
     }
 
-    /// Where the last step before the end of the span ends (s).
+    /// End of the last step before the end of the span (s).
     pub(super) fn end(&self) -> f64 {
         self.end
     }

@@ -31,7 +31,7 @@ pub(super) struct RigidFit {
     dimension: usize,
 }
 
-/// How nodes turn.
+/// Rotation of nodes.
 pub(super) struct Turning {
     pub(super) rotation: Matrix3<f64>,
     /// rad/s
@@ -123,7 +123,7 @@ impl RigidFit {
         UnitQuaternion::from_rotation_matrix(&rotation).scaled_axis().into()
     }
 
-    /// How the nodes turn; without accelerations in the `view` the angular one is NaN.
+    /// Rotation of the nodes; without accelerations in the `view` the angular one is NaN.
     pub(super) fn turning(&self, view: &View) -> Turning {
         let (d, rotation) = (self.dimension, self.rotation(view));
         let positions = self.positions(view);

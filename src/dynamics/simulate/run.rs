@@ -308,12 +308,12 @@ impl Run {
         Ok(true)
     }
 
-    /// Where steps end (s).
+    /// End of the steps (s).
     pub(super) fn stop(&self) -> f64 {
         self.pause.unwrap_or(f64::INFINITY).min(self.phase_run.interval.end())
     }
 
-    /// Where the next step ends at the latest (s), if its size (s) is known to be `next`: before it passes over what changes with time,
+    /// Latest end of the next step (s), if its size (s) is known to be `next`: before it passes over changes with time,
     /// and before a jump at the end of the interval.
     fn bound(&mut self, next: Option<f64>) -> f64 {
         let stop = self.phase_run.interval.stop;
@@ -334,7 +334,7 @@ impl Run {
         self.resolution.bound(self.time, until).unwrap_or(end)
     }
 
-    /// Where the last step of the interval ends (s).
+    /// End of the last step of the interval (s).
     pub(super) fn resolution_end(&self) -> f64 {
         self.resolution.end()
     }
@@ -483,7 +483,7 @@ impl Run {
         self.settled_report()
     }
 
-    /// How the phase in force was computed so far.
+    /// Report of the current phase so far.
     pub(super) fn phase_report(&self) -> PhaseReport {
         self.phase_run.report(&self.phase, self.time, &self.integration)
     }

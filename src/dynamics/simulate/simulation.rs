@@ -152,7 +152,7 @@ impl Simulation {
         self.run.number
     }
 
-    /// How the motion was computed so far.
+    /// Report of the computation so far.
     pub fn report(&self) -> Report {
         self.run.report()
     }

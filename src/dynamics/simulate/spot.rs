@@ -25,7 +25,7 @@ use crate::elements::mesh::Selection;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spot(pub(super) At);
 
-/// Where it is.
+/// Its position.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum At {
     Nodes(Selection),

@@ -1,4 +1,4 @@
-//! How places are read: by sums over nodes, and of markers by the rigid motion of theirs.
+//! Readings at places: by sums over nodes, and of markers by the rigid motion of their nodes.
 
 use nalgebra::Vector3;
 

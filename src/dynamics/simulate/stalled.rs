@@ -5,7 +5,7 @@
 //! lie outside of the stability regions of its orders above 2 (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations
 //! II*, section V.2), which bounds its steps by the fastest of them, however small they are.
 //!
-//! Where bodies touch, what sticks, slides, rests or chatters bounds the steps of one method and not of another, and no spectrum
+//! Where bodies touch, sticking, sliding, rest or chatter bounds the steps of some methods only, and no spectrum
 //! tells which. There others are tried as soon as many steps are still to come, in turn, and after one has failed.
 
 use super::auto::{FINE, Plan, Probe, TRIAL};
@@ -47,9 +47,11 @@ impl Plan {
         }
         let reason = match self.touches {
             true => {
-                format!("bodies touch, and {taken} steps of {step:.1e} s in the mean lead not far")
+                format!(
+                    "bodies touch, and {taken} steps of {step:.1e} s in the mean make little progress"
+                )
             }
-            false => format!("{taken} steps of {step:.1e} s in the mean lead nearly nowhere"),
+            false => format!("{taken} steps of {step:.1e} s in the mean make almost no progress"),
         };
         let before = Box::new(self.less_impatient());
         let plan = before.followed_by(self.other()?, self.asked.max_order, &reason);

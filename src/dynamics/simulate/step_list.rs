@@ -38,7 +38,7 @@ impl Prescribed {
         Self { list, begun: 0, span: [0.0; 2], next: 0 }
     }
 
-    /// Where the step from `time` ends (s), in an interval up to `stop` whose last step ends at `last` (s).
+    /// End of the step from `time` (s), in an interval up to `stop` whose last step ends at `last` (s).
     pub(super) fn end(&mut self, time: f64, stop: f64, last: f64) -> f64 {
         if self.begun == 0 || self.span[1] != stop {
             (self.begun, self.span, self.next) = (self.begun + 1, [time, stop], 0);

@@ -127,7 +127,7 @@ impl Run {
         (balance - self.balance, scale)
     }
 
-    /// How long the phase lasts (s).
+    /// Duration of the phase (s).
     fn phase_length(&self) -> f64 {
         let start = self.number.checked_sub(1).map_or(0.0, |k| self.scene.phases()[k].end());
         self.phase.until - start

@@ -16,11 +16,11 @@ pub(crate) struct Tape {
     pub(super) states: Vec<Vec<f64>>,
     /// The angles of sensors at the end.
     pub(super) angles: Angles,
-    /// Why the steps cannot be taken back, if that is known.
+    /// Reason for which the adjoint is not available, if it is known.
     pub(super) refused: Option<String>,
 }
 
-/// Where a step lies.
+/// Position of a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TapedStep {
     /// Number of the phase, and of its interval.
@@ -69,15 +69,15 @@ impl Simulation {
         Ok((trajectory, list, tape))
     }
 
-    /// The reason that keeps the steps of the run from being taken back, as far as it is known at its start.
+    /// The reason for which the adjoint of the run is not available, as far as it is known at its start.
     fn why_not_taken_back(&self) -> Option<String> {
         let Self { run, .. } = self;
         let phases = run.scene.phases();
         let projects = phases.iter().skip(1).find(|phase| phase.projects_velocity);
         if run.settings.method != Method::Rosenbrock {
-            Some(format!("steps by {} are not taken back", run.settings.method))
+            Some(format!("adjoint gradients do not support {}", run.settings.method))
         } else if run.reduced.is_some() {
-            Some("steps of reduced models are not taken back yet".into())
+            Some("adjoint gradients do not yet support reduced models".into())
         } else {
             projects
                 .map(|phase| format!("phase \"{}\" changes velocities at its start", phase.name()))

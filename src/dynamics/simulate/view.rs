@@ -142,7 +142,7 @@ impl<'a> View<'a> {
         self.body().mass_average(self.v)
     }
 
-    /// How far an orifice is open.
+    /// Opening of an orifice.
     ///
     /// # Errors
     /// A name that no orifice has.

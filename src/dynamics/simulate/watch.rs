@@ -76,7 +76,7 @@ impl Turns {
     }
 }
 
-/// How an advance ended.
+/// End of an advance.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Arrival {
     /// At the requested time.

@@ -21,17 +21,17 @@ struct Pending<'a> {
     value: f64,
     after: f64,
     is_met: bool,
-    /// How it begins to change after commands given when it had just been met: only the sign counts. 0 if
+    /// Rate of its first change after commands given when it had just been met: only the sign counts. 0 if
     /// that is not known.
     tendency: f64,
     turns: Turns,
 }
 
-/// How often events are checked in each step: an implicit method takes the whole flight between two impacts
+/// Number of checks of events in each step: an implicit method takes the whole flight between two impacts
 /// in one.
 const LOOKS: u32 = 8;
 
-/// How often the time to the next check is halved to see whether an action has turned an event back.
+/// Number of halvings of the time to the next check, to find whether an action has reversed an event.
 const HALVES: u32 = 20;
 
 /// Part of the time between two checks within which events count as simultaneous.
@@ -285,7 +285,7 @@ impl Simulation {
         }
     }
 
-    /// How an event changes as all nodes move on with their velocities; only the sign counts.
+    /// Rate of change of an event as all nodes continue with their velocities; only the sign counts.
     fn tendency(
         &self,
         number: Option<usize>,

@@ -1,8 +1,8 @@
-//! Load steps: their sizes, and what helps where Newton's method fails.
+//! Load steps: their sizes, and remedies where Newton's method fails.
 //!
 //! A step that fails is halved; where it would become too small, damped motion (implicit Euler steps of M u'
 //! = f, longer as f falls) finds the next equilibrium, and the report says so. Loads are scaled by the
-//! factor, signals of actuators and amounts in chambers rise along straight lines from what exerts nothing
+//! factor, signals of actuators and amounts in chambers rise linearly from values without a force
 //! (`Scene::loaded`).
 
 use super::newton::{SHIFTS, Search, Stuck};

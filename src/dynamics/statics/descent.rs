@@ -1,15 +1,15 @@
 //! Steps that lower the energy: the line search, and the first step of a load step.
 //!
-//! Nodes go straight, cells turn: along a straight step a slender body is stretched, and of a long one hardly anything is left. So
-//! where a straight step does not lead down, its cells are turned by the same angles instead (`elements/body/turning.rs`).
+//! Nodes move along straight lines, cells rotate: a straight step stretches a slender body, and a long one is cut to a small fraction. So
+//! where a straight step does not lower the energy, its cells are rotated by the same angles instead (`elements/body/turning.rs`).
 //!
-//! A straight step that turns a cell by theta stretches it by theta^2/2; of a step of a radian the line
-//! search leaves some hundredths. The energy has to fall along the turned step as along the straight one. A
+//! A straight step that rotates a cell by theta stretches it by theta^2/2; a step of a radian is cut to
+//! some hundredths by the line search. The energy has to fall along the rotated step as along the straight one. A
 //! load step begins with the tangent of the last one at its load, if the energy falls along the whole of that
-//! step, as the tangent of the new load has stress there that nothing resists yet. Mixed methods (stress as
+//! step, as the tangent of the new load has unbalanced stress there. Mixed methods (stress as
 //! an unknown; D. Magisano, L. Leonetti, G. Garcea, Int. J. Numer. Methods Eng. 109, 2017) do as well for St.
-//! Venant-Kirchhoff under dead loads; with rubber and tendons, which are stretched in between as far as nodes
-//! go straight, they fail with Hooke's moduli. Iterations are in `docs/notes/statics.md`.
+//! Venant-Kirchhoff under dead loads; with rubber and tendons, which straight steps of nodes stretch in between,
+//! they fail with Hooke's moduli. Iterations are in `docs/notes/statics.md`.
 
 use super::newton::{PASSED, Search, Stuck, reason};
 use crate::base::simd::add_multiple;
@@ -22,16 +22,16 @@ const LEAST_TURN: f64 = 0.01;
 /// The longest first steps that are tried, in sizes of the body: straight, and turning.
 const FAR: [f64; 2] = [0.5, 2.0];
 
-/// How cells move along a step.
+/// Deformation of cells along a step.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Path {
     Straight,
     Turning,
 }
 
-/// Where a step leads.
+/// Result of a step.
 enum End {
-    /// Down: it has been taken.
+    /// Lower energy: accepted.
     Lower,
     /// Up; the factor for which the energy is lowest, by the parabola through the known values.
     Higher(f64),
@@ -160,7 +160,7 @@ impl Search<'_> {
         Ok(End::Higher(-0.5 * slope * factor / (rise / factor - slope)))
     }
 
-    /// Where `factor` times x leads, for `work`, and the forces there, for `trial`; or why it leads nowhere.
+    /// Where `factor` times x leads, for `work`, and the forces there, for `trial`; or the reason for its failure.
     fn reach(&mut self, factor: f64, path: Path) -> Result<Option<End>, Stuck> {
         self.work.copy_from_slice(&self.u);
         add_multiple(factor, &self.x, &mut self.work);

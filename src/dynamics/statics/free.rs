@@ -1,14 +1,14 @@
-//! The search for an equilibrium of a body that the constraints leave free to move as a whole.
+//! The search for an equilibrium of a body with free rigid motions.
 //!
 //! K + floor M of the search is definite, and its steps leave the body where it is. Two things remain to be
-//! done. Loads of constant direction (dead loads) may have to turn a body far before they balance each other.
-//! Straight steps would strain it as it turns, so it is turned rigidly, along circles: by Newton's method on
+//! done. Loads of constant direction (dead loads) may have to rotate a body far before they balance each other.
+//! Straight steps would strain it, so it is rotated rigidly, along circles: by Newton's method on
 //! the angles, with falling energy. And in equilibrium, motions that no force resists are removed from the
 //! displacements.
 //!
 //! A linear free body needs loads in balance: K plus 1e-10 of the highest eigenvalue times M then has the
 //! same solution but for an error that iteration removes, and rigid motions are projected out by M. A net
-//! force that nothing can take up is refused beforehand; moments that no rotation balances are reported when
+//! force without a support is rejected beforehand; moments that no rotation balances are reported when
 //! the search ends.
 
 use nalgebra::{DMatrix, DVector};

@@ -10,17 +10,17 @@
 //! Where the tangent is indefinite, a multiple of M is added to it until it is positive definite, so that the
 //! energy falls in the search. If the search does not converge, constraints and loads are applied in smaller
 //! and smaller steps: constraints and obstacles along their paths; gravity, loads, pressure, the forces of
-//! actuators, what winches draw in, growth and amounts of gas and liquids by a factor. Where no step is small
+//! actuators, lengths of winches, growth and amounts of gas and liquids by a factor. Where no step is small
 //! enough, damped motion finds the next equilibrium. Obstacles in
-//! motion count as standing where they are: nothing is dragged along.
-//! Friction does not act either, as it depends on how the body came there.
+//! motion are held in their positions: nothing is dragged along.
+//! Friction does not act either, as it depends on the motion before.
 //!
 //! A scene that starts from a given state is in equilibrium near it: the search begins there under the whole load, and
-//! what the loads leave unbalanced is released by a factor.
+//! the unbalanced force is released by a factor.
 //!
 //! A body that nothing holds is in equilibrium if its loads balance each other. Of all its positions the one
-//! is taken in which it has not moved as a whole: the displacements have no component along any rigid motion
-//! R, R^T M u = 0. With Green's strain a body turns to where loads of constant direction balance each other,
+//! without rigid motion is chosen: the displacements have no component along any rigid motion
+//! R, R^T M u = 0. With Green's strain a body rotates until loads of constant direction balance each other,
 //! and is free only for motions that no force resists: all of them if it is under pressure all around.
 //!
 //! With arc length the load is not given, but found together with the displacements, along the path of
@@ -55,10 +55,10 @@ impl Scene {
     /// The equilibrium under the constraints, gravity, loads, obstacles and springs of the first phase at its
     /// end, without motion.
     ///
-    /// The body would come to rest in it if they stayed in force.
+    /// The body would reach rest in it if they continued to act.
     ///
     /// The search begins at the displacements of the [start](Self::starting_from): in the undeformed shape without load, or in a given
-    /// state under the whole load, of which what is unbalanced there is released step by step. So one load step follows another by hand,
+    /// state under the whole load, whose unbalanced part there is released step by step. So one load step follows another by hand,
     /// and of several equilibria the near one is found.
     ///
     /// ```
@@ -196,7 +196,7 @@ impl Scene {
             }
             if search.rest.is_driven() {
                 let input = format!("statics.arc_steps for phase \"{}\"", phase.name());
-                let help = "obstacles that move cannot go back with the load: let them stand, or leave it 0";
+                let help = "obstacles in motion cannot follow a load that falls: give them no motion, or leave it 0";
                 return Err(InputError::new(input, statics.arc_steps, help).into());
             }
         }

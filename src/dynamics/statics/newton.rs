@@ -34,7 +34,7 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// Where the search starts from.
+    /// Start of the search.
     pub(super) fn start(u: &[f64], rows: usize) -> Self {
         Self { fraction: 0.0, u: u.to_vec(), mu: vec![0.0; rows], drift: 0.0 }
     }
@@ -101,7 +101,7 @@ const NEAR: f64 = 0.5;
 /// free, or held by rows of several nodes), and the largest.
 pub(super) const SHIFTS: [f64; 2] = [1e-10, 1e3];
 
-/// Why a step is not taken.
+/// Reason for the rejection of a step.
 pub(super) const PASSED: &str =
     "surfaces that touch would pass through each other: take more load_steps";
 

@@ -1,10 +1,10 @@
-//! How an equilibrium is sought.
+//! Options of the search for an equilibrium.
 
 use std::ops::RangeInclusive;
 
 use crate::base::input::InputError;
 
-/// How an equilibrium is sought.
+/// Options of the search for an equilibrium.
 ///
 /// All forces act as they do at rest: dampers, friction and obstacles in motion drag nothing along. Where a
 /// body would stick to an obstacle depends on how it came there; [`Scene::simulate`](crate::Scene::simulate)

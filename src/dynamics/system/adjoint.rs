@@ -6,7 +6,7 @@
 //! u' = v,   M a - A lambda = f(t, u, v),   A^T a = -C(t, u, v)
 //! ```
 //!
-//! weighted with y, w and m, where A^T w = 0: (y, w, m) stand for the adjoint vector (y, M w + A m). Its product with (u', v') is
+//! weighted with y, w and m, where A^T w = 0: (y, w, m) represent the adjoint vector (y, M w + A m). Its product with (u', v') is
 //! y.v + w.f - m.C, so that no product solves a system with M. The Newton system transposed is
 //!
 //! ```text
@@ -24,12 +24,15 @@ use crate::integrators::ode::Failure;
 use crate::integrators::rosenbrock::Transposed;
 
 impl System {
-    /// The reason that keeps steps from being taken back, if there is one.
+    /// The reason for which the adjoint of steps is not available, if there is one.
     pub(crate) fn why_not_transposed(&self) -> Option<&'static str> {
         [
-            (self.layout.strains > 0, "bodies with Maxwell branches are not taken back yet"),
-            (self.layout.amounts > 0, "gas, liquids and actuators that lag are not taken back yet"),
-            (self.matrices.rigid.is_some(), "rigid pieces are not taken back yet"),
+            (self.layout.strains > 0, "adjoint gradients do not yet support Maxwell branches"),
+            (
+                self.layout.amounts > 0,
+                "adjoint gradients do not yet support gas, liquids and actuators that lag",
+            ),
+            (self.matrices.rigid.is_some(), "adjoint gradients do not yet support rigid pieces"),
         ]
         .into_iter()
         .find_map(|(is, why)| is.then_some(why))

@@ -7,11 +7,11 @@
 //!
 //! with K = -df/du. External actions are applied gradually. From the undeformed shape, gravity, loads, pressure and the
 //! forces of actuators act by a fraction of their strength; obstacles in motion are at that fraction of their paths; tensions of
-//! cables, what winches draw in, strains of growth and amounts of gas and liquids have risen by it
+//! cables, lengths of winches, strains of growth and amounts of gas and liquids have risen by it
 //! ([`Scene::loaded`](crate::Scene)). The body and its springs do not change.
 //!
-//! From a given start u_0, all these act whole, and what they leave unbalanced there is released instead: with the fraction s the
-//! forces are f(u) - (1 - s) f(u_0). Where u_0 was in equilibrium under other dead loads, that is the straight way from these loads
+//! From a given start u_0, all these act fully, and the unbalanced force there is released instead: with the fraction s the
+//! forces are f(u) - (1 - s) f(u_0). Where u_0 was in equilibrium under other dead loads, that is the straight path from these loads
 //! to the present ones.
 //!
 //! The shift of K + shift M is 0 unless K is indefinite; M is the natural measure of displacements, and the
@@ -44,7 +44,7 @@ pub(crate) struct AtRest {
     /// Velocities of the nodes for each of the forces: those of an obstacle in motion, so that it drags
     /// nothing along and no damper acts, as if it stood still. Empty for others.
     velocities: Vec<Vec<f64>>,
-    /// Where the search starts (m), and, of a given start, the forces (N) that are unbalanced there.
+    /// Start of the search (m), and, of a given start, the unbalanced forces (N) there.
     start: Vec<f64>,
     unbalanced: Option<Vec<f64>>,
     nodal: NodalForces,
@@ -150,7 +150,7 @@ impl AtRest {
         let mut at = ForceBalance::zeros(start.len());
         self.unbalanced = Some(vec![0.0; start.len()]);
         self.evaluate(0.0, &start, &mut at)?;
-        // forces on what is held are those of the constraints
+        // forces on held components are those of the constraints
         for dof in self.system.rows.iter().filter_map(|row| row.nodal()) {
             at.total[dof.0] = 0.0;
         }
@@ -158,12 +158,12 @@ impl AtRest {
         Ok(self)
     }
 
-    /// Where the search starts (m).
+    /// Start of the search (m).
     pub(crate) fn start(&self) -> &[f64] {
         &self.start
     }
 
-    /// The fraction of the loads that acts at a `fraction` of the way.
+    /// The fraction of the loads that acts at a `fraction` of the path.
     pub(crate) fn acting(&self, fraction: f64) -> f64 {
         if self.unbalanced.is_some() { 1.0 } else { fraction }
     }
@@ -261,7 +261,7 @@ impl AtRest {
         Ok(())
     }
 
-    /// The part of the straight way from displacements `u` to `to` on which surfaces that touch come much nearer to each
+    /// The part of the straight path from displacements `u` to `to` on which surfaces that touch come much nearer to each
     /// other than at both of its ends, if they do: they would pass through each other.
     pub(crate) fn passage(&self, u: &[f64], to: &[f64]) -> Option<f64> {
         // obstacles, which have switches, push back from any depth
@@ -375,7 +375,7 @@ impl AtRest {
         8.0 * f64::EPSILON * terms.fold(0.0, f64::max)
     }
 
-    /// Factorizes the matrix that `add` makes in the place of K. A slight multiple of M holds what it does not hold.
+    /// Factorizes the matrix that `add` makes in the place of K. A small multiple of M holds its free motions.
     pub(crate) fn factorize_other(&mut self, add: impl FnOnce(&mut BlockMatrix)) -> bool {
         let Some(matrix) = self.system.newton.stiffness.begin(&None) else { return false };
         add(matrix);

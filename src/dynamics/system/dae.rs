@@ -26,8 +26,8 @@
 //!
 //! Edges of rigid pieces (`edges.rs`) have multipliers behind those of the rows, which press with x at their nodes, and in the
 //! form of index 2 second ones behind eta. Their residuals are x.x'' + x'.x' + 2 alpha x.x' + alpha^2 g, or x.x' and g. The
-//! forces on dependent nodes are moved to their frames, W^T (M v' - f), and what these nodes have in place of both rows of theirs
-//! is where they are and how they move, u - W u and v - W v, so that nothing strays.
+//! forces on dependent nodes are moved to their frames, W^T (M v' - f), and both rows of these nodes
+//! become their positions and velocities, u - W u and v - W v, so that they do not drift.
 //!
 //! Newton's systems of index 2 decouple except for one part: with xu = s + gamma xv,
 //!
@@ -35,7 +35,7 @@
 //! G s = r4 - gamma r3 + gamma x'.xu,   (G + gamma x') xv = r3 - x'.s
 //! ```
 //!
-//! gamma x'.xu, known last, is left out: iterations converge by the angle that a piece turns in a time gamma.
+//! gamma x'.xu, known last, is omitted: iterations converge by the rotation of a piece in a time gamma.
 
 use super::System;
 use crate::dynamics::state::State;

@@ -39,7 +39,7 @@ struct Own {
     named: Columns,
     /// With all pairs of the Newton matrix, if those named did not suffice.
     all: Option<Columns>,
-    /// Whether these did explain what those named did not.
+    /// Whether these explain the differences that the named ones do not.
     is_wide: bool,
 }
 
@@ -105,7 +105,7 @@ impl Differences {
         }
     }
 
-    /// Has the columns of forces be sought anew, on a matrix of another pattern.
+    /// Restarts the search for the columns of forces, on a matrix of another pattern.
     pub(crate) fn forget_patterns(&mut self) {
         self.forces.clear();
     }

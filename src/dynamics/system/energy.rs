@@ -50,7 +50,7 @@ impl System {
         self.energy_under(&self.forces, t, [u, v, internal])
     }
 
-    /// The same under these `forces` beside those of matrices, branches and what flows.
+    /// The same under these `forces` and those of matrices, branches and flows.
     pub(crate) fn energy_under(
         &self,
         forces: &Forces,

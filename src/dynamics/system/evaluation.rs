@@ -105,7 +105,7 @@ impl System {
         Ok(())
     }
 
-    /// Adds the forces that have no constant matrix, if they are `among` those that are asked for.
+    /// Adds the forces that have no constant matrix, if they are `among` the requested ones.
     pub(super) fn add_forces_where(
         &mut self,
         among: impl Fn(&dyn Force) -> bool,

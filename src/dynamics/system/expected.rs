@@ -1,5 +1,5 @@
-//! The motions that a body is expected to make in a phase, found at rest without a run: what its loads would do, its free
-//! vibrations, what its constraints move, and the modal derivatives of all these, that is how the shapes change as the body moves
+//! The expected motions of a body in a phase, found at rest without a run: displacements by its loads, its free
+//! vibrations, displacements by its constraints, and the modal derivatives of all these, that is the change of the shapes as the body moves
 //! along them (S. Idelsohn, A. Cardona, Comput. Methods Appl. Mech. Engng 49 (1985) 253-279).
 
 #[cfg(test)]
@@ -16,7 +16,7 @@ use crate::scene::constraint::ConstraintRow;
 const VIBRATIONS: usize = 24;
 const CURVED: usize = 10;
 
-/// Parts of a phase at which loads are looked at.
+/// Fractions of a phase at which loads are evaluated.
 const TIMES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Part of the largest motion that the lowest vibration makes at least, and each other as its period is shorter.
@@ -66,7 +66,7 @@ impl System {
         let (mut motions, mut loads) = (Vec::new(), Vec::new());
         for time in times {
             let mut load = self.load_at_rest(time)?;
-            // what is left when the body moves as a whole
+            // the remainder when the body moves as a whole
             for motion in rigid {
                 let part = -dot(motion, &load);
                 self.matrices.add_momentum(part, motion, &mut load);
@@ -74,7 +74,7 @@ impl System {
             motions.push(self.response(&load));
             loads.push(load);
         }
-        // what resists large motions is not among what is linear
+        // the resistance to large motions is not linear
         let linear = largest_of(&motions);
         let part = most.map_or(1.0, |most| if linear > most { most / linear } else { 1.0 });
         motions.iter_mut().chain(&mut loads).flatten().for_each(|x| *x *= part);

@@ -57,7 +57,7 @@ impl System {
         }
     }
 
-    /// Prepares what the Newton matrix, just factorized, lacks of gas that flows.
+    /// Prepares the contribution of flowing gas that the Newton matrix, just factorized, lacks.
     pub(super) fn condense_flow(&mut self) {
         let newton = &mut self.newton;
         if newton.flow.is_none() {

@@ -1,16 +1,16 @@
-//! How velocities follow from forces under the constraints,
+//! Velocities from forces under the constraints,
 //!
 //! ```text
 //! M a = f + A lambda,   w = v + tau a,   A^T w = rates
 //! ```
 //!
-//! For central differences the multipliers of edges (`edges.rs`) in the first half of a step press along the
-//! edges at its start, so that lengths are right at its end, and those of the second half along the edges at
+//! For central differences the multipliers of edges (`edges.rs`) in the first half of a step act along the
+//! edges at its start, so that lengths are exact at its end, and those of the second half along the edges at
 //! its end (RATTLE; on a free body the method of Moser and Veselov, which keeps momenta and energy to
-//! round-off). Where g is not 0 at the start it decays as the stabilization has it (`guide.rs`), so that a
-//! run goes on from any other method. A step in which an edge turns by more than 60 degrees is repeated with
+//! round-off). Where g is not 0 at the start it decays by the stabilization (`guide.rs`), so that a
+//! run continues from any other method. A step in which an edge turns by more than 60 degrees is repeated with
 //! a shorter one. Multipliers of the halves belong to times h/3 within the step: the error estimate uses
-//! differences between the halves of each step alone, and sees a third of their change.
+//! differences between the halves of each step only, a third of their change.
 
 use super::System;
 use crate::base::simd::{Formula, each};

@@ -17,7 +17,7 @@
 //! Maxwell branches, gas that flows and actuators that lag have unknowns beside u and v: internal strains and amounts, in this order.
 //!
 //! Two more unknowns are integrated: the energy dissipated and the energy supplied since t = 0. They cost two
-//! dot products, nothing depends on them, and the error control leaves them out; they make the energy balance
+//! dot products, nothing depends on them, and the error control excludes them; they make the energy balance
 //! as accurate as the integration itself.
 //!
 //! `dynamics/state.rs` owns the order of the unknowns, y = (u, v, strains, amounts, E_d, E_s), behind which differential-algebraic
@@ -27,7 +27,7 @@
 //! not infinite: unknowns that Newton's iteration does not control grow without bound, as BDF extrapolates
 //! their errors. To Rosenbrock methods and the internal Runge-Kutta method they are integrals.
 //!
-//! A row of the constraints that goes on into the next phase starts where the phase before prescribed it, so
+//! A row of the constraints that continues into the next phase starts from its prescribed value in the phase before, so
 //! that the error of the stabilization is not passed on. Multipliers follow from the constrained rows of M
 //! a - f; in the ODE form they are output.
 
@@ -89,13 +89,13 @@ use crate::scene::constraint::ConstraintRow;
 
 /// Equations of one phase, with everything that evaluating and solving them needs.
 pub(crate) struct System {
-    /// The matrices of the scene, and those with room for what is near now.
+    /// The matrices of the scene, and those with entries for pairs that are near now.
     base: Arc<Matrices>,
     matrices: Arc<Matrices>,
     forces: Forces,
-    /// Those that keep rigid pieces in their shape, which their edges do here.
+    /// Forces that keep rigid pieces in shape, as their edges do here.
     of_rigid: Forces,
-    /// That whose amounts are unknowns, if there is one.
+    /// The force whose amounts are unknowns, if there is one.
     flow: Option<Arc<dyn Force>>,
     layout: Layout,
     rows: Vec<ConstraintRow>,
@@ -110,7 +110,7 @@ pub(crate) struct System {
     linear_edges: Edges,
     newton: NewtonMatrix,
     at: Evaluation,
-    /// Why a force was undefined, the last time that one was.
+    /// Reason of the last undefined force.
     refusal: String,
     /// Pressures of liquids at the ends of the last step.
     ends: Ends,
@@ -132,7 +132,7 @@ struct Evaluation {
     /// Rates (1/s) of the internal strains, and the power (W) that they dissipate.
     relaxing: Vec<f64>,
     relaxed: f64,
-    /// Rates of the amounts of gas (kg/s) and of the flows of pipes, room for as many numbers, and the power (W) supplied with them.
+    /// Rates of the amounts of gas (kg/s) and of the flows of pipes, a workspace of the same size, and the power (W) supplied with them.
     flowing: [Vec<f64>; 2],
     brought: f64,
 }
@@ -230,7 +230,7 @@ impl System {
         self.matrices.dofs()
     }
 
-    /// Replaces the forces, if the Newton matrix has room for their tangents; all else is unchanged. Returns
+    /// Replaces the forces, if the Newton matrix has entries for their tangents; all else is unchanged. Returns
     /// whether it has.
     pub(crate) fn change_forces(&mut self, forces: Forces) -> bool {
         if follows(&self.matrices, &forces) != self.newton.follows {
@@ -251,7 +251,7 @@ impl System {
         self.newton.is_set = false;
     }
 
-    /// The matrices, with room for what is near now.
+    /// The matrices, with entries for pairs that are near now.
     pub(crate) fn matrices(&self) -> &Matrices {
         &self.matrices
     }
@@ -314,7 +314,7 @@ impl System {
         self.inertia.solve(&self.rows, &momentum, &demands, v, &mut vec![0.0; demands.len()]);
     }
 
-    /// Why a force was undefined at a trial point, the last time that one was; empty if none ever was.
+    /// Reason of the last undefined force at a trial point; empty if there was none.
     pub(crate) fn refusal(&self) -> &str {
         &self.refusal
     }

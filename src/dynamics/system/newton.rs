@@ -10,11 +10,11 @@
 //! xu = ru + gamma xv
 //! ```
 //!
-//! This needs one sparse matrix N of half the size; alpha costs nothing, however large. Its symmetric part is factorized. What is left
-//! of it follows by an iteration for methods that solve once (`linear/skew.rs`); Newton's iteration does without.
+//! This needs one sparse matrix N of half the size; alpha costs nothing, however large. Its symmetric part is factorized. The skew part
+//! follows by an iteration for methods that solve once (`linear/skew.rs`); Newton's iteration omits it.
 //!
 //! Maxwell branches are eliminated point by point (`elements/body/branches.rs`), so that Kt includes their
-//! effect in a step of gamma. Amounts of gas are eliminated as well; what they add to Kt is of the rank of their number,
+//! effect in a step of gamma. Amounts of gas are eliminated as well; their contribution to Kt has the rank of their number,
 //! and stays apart (`flow_matrix.rs`).
 //!
 //! Of r = c + gamma (v, M^-1 (f + A lambda)) the integrators are given only c + gamma (v, 0): then
@@ -38,7 +38,7 @@ use crate::dynamics::matrices::Matrices;
 use crate::dynamics::state::State;
 use crate::integrators::ode::Failure;
 
-/// Pairs that have room in the Newton matrix though they are no longer near, for each that is.
+/// Ratio of pairs in the Newton matrix that are no longer near to those that are.
 const MOST_KEPT: usize = 3;
 
 impl System {
@@ -75,7 +75,7 @@ impl System {
         let State { u, v, internal, .. } = self.layout.of(y);
         let (strains, amounts) = self.layout.split(internal);
         self.set_lagging(t, internal);
-        // what Maxwell branches add depends on gamma
+        // the contribution of Maxwell branches depends on gamma
         let current = self.update_tangents(t, u, v, reuse && strains.is_empty());
         self.add_branch_tangents(gamma, u, strains);
         if current {
@@ -118,7 +118,7 @@ impl System {
         true
     }
 
-    /// Makes room in the Newton matrix for pairs of nodes that have come near each other. Those that were near before
+    /// Adds entries to the Newton matrix for pairs of nodes that have come near each other. Those that were near before
     /// keep theirs, unless there are many more of them than are near now.
     pub(super) fn make_room(&mut self, u: &[f64]) {
         let pattern = self.matrices.pattern();
@@ -200,7 +200,7 @@ impl System {
         })
     }
 
-    /// Prepares what edges and what flows need of the N in force.
+    /// Prepares edges and flows for the current N.
     fn complete_newton(&mut self) {
         if let Some(solver) = &mut self.newton.solver.edges {
             solver.turn(&self.linear_edges, Some(stabilized(self.newton.gamma, self.alpha)));
@@ -321,7 +321,7 @@ impl System {
         rv.copy_from_slice(&self.newton.xv);
     }
 
-    /// Adds to the right-hand side what the residuals of the `internal` unknowns, and those of the displacements, `ru`, do to
+    /// Adds to the right-hand side the effect of the residuals of the `internal` unknowns, and of those of the displacements, `ru`, on
     /// the forces.
     fn add_internal_residuals(&mut self, ru: &[f64], internal: &[f64]) {
         let NewtonMatrix { right, gamma, place, flow, .. } = &mut self.newton;
@@ -442,7 +442,7 @@ impl System {
             (self.matrices.dimension, &mut self.newton);
         for at in rigid.dependents().flat_map(|(node, _)| node * d..(node + 1) * d) {
             stray[at] = std::mem::take(&mut r2[at]);
-            // xv, with what has strayed of it, adds to xu
+            // xv, with its error, adds to xu
             xv[at] = std::mem::take(&mut r1[at]) - *gamma * stray[at];
         }
     }

@@ -1,4 +1,4 @@
-//! The Newton matrix, factorized, and the tangents of the forces of which it is made.
+//! The Newton matrix, factorized, and the tangents of the forces in it.
 
 use std::sync::Arc;
 
@@ -9,12 +9,12 @@ use crate::dynamics::matrices::Matrices;
 use crate::scene::constraint::ConstraintRow;
 
 /// Residuals, relative to the right-hand side, to which systems may be solved where that saves work: the
-/// first far below what a Newton iteration leaves, the second below what matters to any integrator that
+/// first far below the residual of a Newton iteration, the second below the errors that affect any integrator that
 /// solves each system once.
 pub(super) const ITERATED: f64 = 1e-5;
 pub(super) const SOLVED_ONCE: f64 = 1e-11;
 
-/// Residual, relative to the right-hand side, that may be left of what is not symmetric: a Rosenbrock method of order 4 must know it.
+/// Largest residual of the skew part, relative to the right-hand side: a Rosenbrock method of order 4 needs that part.
 pub(super) const SKEW: f64 = 1e-9;
 
 pub(super) struct NewtonMatrix {

@@ -1,4 +1,4 @@
-//! The equations of a phase as a run sees them, in any unknowns.
+//! The equations of a phase as the interface of a run, in any unknowns.
 
 use super::{Energy, ResidualSnapshot, Spectrum, System};
 use crate::elements::force::Forces;
@@ -18,7 +18,7 @@ pub(crate) trait PhaseSystem: Send {
         self.full().dofs()
     }
 
-    /// Replaces the forces, if there is room for them; all else is unchanged. Returns whether there is.
+    /// Replaces the forces, if the matrices have entries for them; all else is unchanged. Returns whether they have.
     fn change_forces(&mut self, forces: Forces) -> bool {
         self.full_mut().change_forces(forces)
     }

@@ -1,4 +1,4 @@
-//! Bounds on how fast the stiffest motions of a phase are.
+//! Bounds on the rates of the stiffest motions of a phase.
 //!
 //! No eigenvalue of D^-1 K, with D diagonal and above 0, exceeds in absolute value
 //!
@@ -96,7 +96,7 @@ impl System {
     /// The rates at (t, u, v). Contacts that do not touch are counted as if they did, and sliding ones as if
     /// they stuck.
     pub(super) fn rates(&mut self, t: f64, u: &[f64], v: &[f64], bound: &mut RatesBound) -> Rates {
-        // the scheme meets edges whatever their multipliers are, and these depend on samples
+        // the scheme satisfies edges for any multipliers, and these depend on samples
         self.edges.multipliers.fill(0.0);
         self.update_tangents(t, u, v, false);
         let RatesBound { masses, free, stiffness, damping } = bound;

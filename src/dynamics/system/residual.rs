@@ -4,9 +4,9 @@
 //! The residual f - M u'' along all directions is divided by K + D/gamma + M/gamma^2, with gamma 30 times the
 //! time of a wave across the body, or the time since the start of the phase if that is shorter. Tangents are
 //! those of the first or the last of the states of a phase, whichever resist more, as a body that is about to buckle
-//! would move far under any force; indefinite ones are factorized only where the others report more than was
-//! wanted, or nothing. The ratio to the largest displacement, times the largest ratio of error to it in the
-//! runs that the model was checked with, is the error estimate of a run. Sensors read the state with and
+//! would move far under any force; indefinite ones are factorized only where the others report more than the
+//! requested error, or nothing. The ratio to the largest displacement, times the largest ratio of error to it in the
+//! verification runs of the model, is the error estimate of a run. Sensors read the state with and
 //! without these displacements: one solve serves all of them and all nodes, to first order the dual-weighted
 //! residual (R. Becker, R. Rannacher, *Acta Numerica* 10 (2001) 1-102), as s'.(A^-1 r) = (A^-T s').r, and
 //! nonlinear sensors keep their nonlinearity.
@@ -16,7 +16,7 @@ use crate::base::simd::add;
 use crate::base::vector::largest;
 use crate::integrators::ode::Failure;
 
-/// A state of a reduced model, with what all unknowns would feel in it except the forces of cells, which depend on nothing else.
+/// A state of a reduced model, with the forces on all unknowns in it except those of cells, which depend on nothing else.
 #[derive(Debug, Clone)]
 pub(crate) struct ResidualSnapshot {
     /// Time (s), and how long the phase has lasted then (s).
@@ -24,7 +24,7 @@ pub(crate) struct ResidualSnapshot {
     pub(crate) age: f64,
     /// Displacements (m), velocities (m/s) and accelerations (m/s^2) of all nodes.
     pub(crate) state: [Vec<f64>; 3],
-    /// Strains of Maxwell branches, and amounts of what flows.
+    /// Strains of Maxwell branches, and amounts of flowing gas and liquids.
     pub(crate) internal: Vec<f64>,
     /// The nodal forces (N) of all but the cells and their branches.
     pub(crate) forces: Vec<f64>,
@@ -54,12 +54,12 @@ impl System {
         Ok(self.at.total.clone())
     }
 
-    /// For each of some states of a phase the displacements (m) by which what a reduced model leaves over would be balanced; none
-    /// where no tangents tell.
+    /// For each of some states of a phase the displacements (m) that would balance the residual of a reduced model; none
+    /// without suitable tangents.
     ///
-    /// Of the tangents of the first and of the last state those tell that resist more: a body on the way to where it comes to
-    /// rest may be about to buckle, and move far under any force. Those that do not resist every motion, which take longer to factorize, are asked only where
-    /// the others tell more than `enough` (m), or nothing.
+    /// Of the tangents of the first and of the last state the stiffer ones are used: a body on its way to
+    /// rest may be about to buckle, and move far under any force. Indefinite ones, which take longer to factorize, are used only where
+    /// the others give more than `enough` (m), or nothing.
     pub(crate) fn imbalances(
         &mut self,
         states: &[ResidualSnapshot],
@@ -123,7 +123,7 @@ impl System {
         let (mut gamma, mut is_factorized) = (0.0, false);
         let mut imbalances = Vec::new();
         for (state, residual) in states.iter().zip(residuals) {
-            // what has just begun to act has not moved the body far
+            // a force that has just begun to act has not moved the body far
             if gamma != step(state) {
                 gamma = step(state);
                 is_factorized = match are_definite {

@@ -1,4 +1,4 @@
-//! Rigid motions that constraints leave free, of a body in some shape.
+//! Rigid motions of a body, in some shape, that constraints leave free.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,8 +1,8 @@
 //! Pressures of liquids between the ends of steps.
 //!
-//! A liquid that fills its chamber whole turns an error of the volume of a millionth into 2.2 kPa, and an interpolated state has
-//! errors as large as its tolerances: by itself it says nothing about the pressure. At the ends of steps that is part of a balance of
-//! forces. So it is interpolated in between, along a parabola, and the walls are moved to the volume that has it: by less than
+//! In a liquid that fills its chamber an error of the volume of a millionth is 2.2 kPa, and an interpolated state has
+//! errors as large as its tolerances, so that it does not determine the pressure. At the ends of steps the pressure is part of a balance of
+//! forces. It is interpolated in between, by a parabola, and the walls are moved to the corresponding volume: by less than
 //! the tolerances, and as an impulse of the pressure would move them.
 
 use super::ends::Ends;
@@ -12,7 +12,7 @@ use crate::base::vector::dot;
 use crate::dynamics::state::{State, StateMut};
 
 /// Multiples of the tolerance of an amount by which volumes are changed at most, each relative to the whole. Beyond them the pressure
-/// does what a parabola does not.
+/// deviates from a parabola.
 const LARGEST_CHANGE: f64 = 10.0;
 
 /// Rounds over the chambers: walls of one may be those of another.

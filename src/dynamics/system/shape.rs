@@ -1,4 +1,4 @@
-//! How a phase keeps its rigid pieces in shape: by their [edges](crate::dynamics::linear::Edges), or in equilibria by their elasticity.
+//! Rigidity of the rigid pieces of a phase: by their [edges](crate::dynamics::linear::Edges), or in equilibria by their elasticity.
 //!
 //! In equilibria nothing turns fast and the search needs an energy, so edges are released and the elasticity
 //! of the pieces acts. With rigid pieces Newton matrices are always factorized, as conjugate gradients would

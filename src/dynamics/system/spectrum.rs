@@ -1,4 +1,4 @@
-//! How fast the motions of a phase are: the numbers by which a method is chosen.
+//! Rates of the motions of a phase: the numbers by which a method is chosen.
 //!
 //! Power iteration finds the highest frequency and rate of decay, subspace iteration with K + shift M the
 //! lowest vibration and its damping ratio. Rigid motions are recognized by their Rayleigh quotient.
@@ -14,7 +14,7 @@ use crate::base::vector::{dot, noise};
 use crate::dynamics::linear::{ConstrainedSolver, Coupling};
 use crate::dynamics::matrices::Matrices;
 
-/// How fast a body can move in a phase.
+/// Frequencies and decay rates of a body in a phase.
 ///
 /// It follows from the tangents M, Kt, D in one state and the motions that the constraints allow. Contacts
 /// and springs count as far as they act in that state, Maxwell branches as springs, without their damping.
@@ -110,7 +110,7 @@ impl System {
         self.add_flow_tangents(t, [u, v, &amounts]);
     }
 
-    /// Adds Kt `x` to `forces`, with what amounts that flow resist as long as they stay, which is no part of the pattern.
+    /// Adds Kt `x` to `forces`, with the resistance of flowing amounts at constant amount, which is not part of the pattern.
     pub(crate) fn add_stiffness(&self, x: &[f64], forces: &mut [f64]) {
         self.tangents().0.add_product(1.0, x, forces);
         if let Some(flow) = &self.newton.flow {
@@ -154,7 +154,7 @@ impl System {
         if stiffness.is_none() {
             positions.iter_mut().zip(u).for_each(|(x, u)| *x += u);
         }
-        // what is stiff is left out below, such as circles that get longer
+        // stiff modes are omitted below, such as circles that get longer
         let shape =
             Shape { dimension: *dimension, size: *size, positions: &positions, is_turned: false };
         let free = rigid::free_motions(shape, inertia.pattern(), &self.rows);

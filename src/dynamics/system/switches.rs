@@ -1,4 +1,4 @@
-//! Where forces change suddenly: steps that make no sense, switches, and obstacles that are passed within a step.
+//! Discontinuities of forces: inadmissible steps, switches, and obstacles that are passed within a step.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ impl System {
         self.forces.iter().map(switches).sum()
     }
 
-    /// Writes the values of the switches of each force of which `is_wanted` says so by their numbers.
+    /// Writes the values of the switches of each force for which `is_wanted` is true, by their numbers.
     pub(crate) fn switch_values(
         &self,
         t: f64,
@@ -47,7 +47,7 @@ impl System {
         }
     }
 
-    /// Whether switches and [`passage`](Self::passage) are to be asked after each step.
+    /// Whether switches and [`passage`](Self::passage) are to be checked after each step.
     pub(crate) fn can_be_passed(&self) -> bool {
         self.forces.iter().any(|force| {
             let Capabilities { switches, contact, .. } = force.capabilities();
@@ -85,7 +85,7 @@ impl System {
         }
     }
 
-    /// For each force, what the body rubs against, and [whether it
+    /// For each force, the counterpart in friction, and [whether it
     /// slides](crate::elements::force::Switches::slides) there.
     pub(crate) fn slides(&self) -> impl Iterator<Item = Option<(&str, Option<bool>)>> {
         self.forces.iter().map(|force| force.capabilities().switches?.slides())

@@ -58,7 +58,7 @@ impl Trajectory {
     }
 
     /// Strain, stress and strain energy density of each cell in a `sample`: those of [`Body::cell_fields`](crate::Body::cell_fields), where cells have
-    /// [grown](crate::Growth) with the stress and the energy of what is left.
+    /// [grown](crate::Growth) with the stress and the energy of the elastic part.
     ///
     /// # Errors
     /// A sample of another scene.
@@ -117,7 +117,7 @@ impl Trajectory {
     pub fn constraint_forces(&self, sample: &Sample) -> Result<Vec<f64>, InputError> {
         let phase = self.phase_of(sample)?;
         let mut forces = vec![0.0; self.body().dofs()];
-        // where the rows start from affects what they prescribe, not which components they couple
+        // the start of the rows affects their prescribed values, not the coupled components
         let before = self.scene.phases()[..sample.phase].last();
         let start = PhaseStart { time: before.map_or(0.0, Phase::end), u: &forces };
         let rows = self.scene.rows(phase, &start)?;

@@ -2,17 +2,17 @@
 
 use crate::scene::constraint::ConstraintRow;
 
-/// Where a phase begins, paths that are away from their nodes.
+/// Paths that begin away from their nodes as a phase begins.
 #[derive(Debug, Clone)]
 pub(crate) struct Leap {
     /// Name of the phase.
     pub(crate) phase: String,
     /// When it begins (s).
     pub(crate) time: f64,
-    /// How many nodes and axes are led by such a path, and which of them is led farthest away, in words.
+    /// Number of nodes and axes with such a path, and the farthest of them, in words.
     pub(crate) count: usize,
     pub(crate) row: String,
-    /// Where that is, and where the path begins (m), both from the undeformed place.
+    /// Position of that node, and beginning of the path (m), both relative to the undeformed position.
     pub(crate) from: f64,
     pub(crate) to: f64,
 }

@@ -1,11 +1,11 @@
-//! How deep the surface of a body got into an obstacle, at the end of any step.
+//! Largest depth of the surface of a body in an obstacle, at the end of any step.
 
 /// A depth that a point of the surface may have within an obstacle.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DepthLimit {
     /// m
     pub(crate) depth: f64,
-    /// Where it comes from.
+    /// Its source.
     pub(crate) reason: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! Cells divided in some places only: longest-edge bisection.
+//! Local refinement of cells: longest-edge bisection.
 //!
 //! Edges of the given cells are marked, and with any edge of a cell its longest one, so that triangles keep half of their
 //! least angle however often they are divided (M. C. Rivara, Int. J. Numer. Meth. Engng. 20 (1984) 745-756). A cell is then

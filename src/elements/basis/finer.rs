@@ -18,7 +18,7 @@ mod joined;
 /// A mesh made finer: nodes keep their numbers, and new ones follow. Of several bodies both do in each.
 pub(crate) struct Finer {
     pub(crate) mesh: Mesh,
-    /// Where the cells begin into which each cell is divided, and their number at the end.
+    /// Index of the first part of each divided cell, and their number at the end.
     first_child: Vec<usize>,
     /// The numbers of the nodes of the first mesh, and the place of every node in it.
     olds: Vec<usize>,
@@ -28,7 +28,7 @@ pub(crate) struct Finer {
     is_boundary: Vec<bool>,
 }
 
-/// Where a node is in the first mesh.
+/// Position of a node in the first mesh.
 struct NodeOrigin {
     corners: Corners,
     /// Nodes of the first mesh with the values of their shape functions.
@@ -393,7 +393,7 @@ fn halves(kind: CellKind) -> Vec<Vec<Point>> {
     simplices.iter().map(|child| child.iter().map(|&point| points[point]).collect()).collect()
 }
 
-/// Where the nodes of the reference cell are.
+/// Positions of the nodes of the reference cell.
 pub(super) fn nodes(kind: CellKind) -> Vec<Point> {
     fn nodes<
         C: ReferenceCell<N, M>,

@@ -66,7 +66,7 @@ impl ReferenceCell<20, 3> for Hexahedron20 {
     ];
     /// The stiffness has full rank. With Gauss's rule of two points along each axis (8 points, cheaper) it
     /// does not: at these points the strain of u = (x (3 y^2 - 1), -y (3 x^2 - 1), 0) f(z), in coordinates
-    /// from -1 to 1, is 0, whatever f is at the ends of the cell. A row of cells, one thick, would have such
+    /// from -1 to 1, is 0, for any f at the ends of the cell. A row of cells, one thick, would have such
     /// a zero-energy mode in each plane between two of them, even where its end is clamped.
     const STIFFNESS_RULE: &'static [([f64; 3], f64)] = &[
         face([-1.0, 0.0, 0.0]),

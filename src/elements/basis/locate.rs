@@ -1,4 +1,4 @@
-//! Where in a cell a point lies.
+//! Location of a point within a cell.
 
 use nalgebra::{SMatrix, SVector};
 

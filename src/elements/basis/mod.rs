@@ -1,6 +1,6 @@
 //! Elements: shape functions and quadrature, one small file per cell.
 //!
-//! The rest of the crate sees only the quadrature points of a cell: the gradients g_a of its shape functions
+//! The rest of the crate uses only the quadrature points of a cell: the gradients g_a of its shape functions
 //! and a weight each. The map from the reference cell to the undeformed shape is isoparametric for all cells.
 //!
 //! A cell of dimension M may live in a space of higher dimension D (a string, a membrane). It is
@@ -103,7 +103,7 @@ pub(crate) struct StrainPoint<T, const N: usize, const M: usize, const D: usize>
     /// Derivative F_0 of the undeformed position by the coordinates of the cell: the identity where the
     /// cell fills space, else its tangent frame.
     pub frame: Matrix<T, D, M>,
-    /// Length, area or volume that the point stands for (m, m^2, m^3).
+    /// Length, area or volume of the point (m, m^2, m^3).
     pub volume: T,
 }
 

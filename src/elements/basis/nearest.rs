@@ -1,4 +1,4 @@
-//! The place of a face that is nearest to a point.
+//! The point of a face that is nearest to a given point.
 
 use super::closest;
 use super::face::{FacePoint, MOST_NODES, is_affine, position, reference_node, second_derivatives};

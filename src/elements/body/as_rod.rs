@@ -1,4 +1,4 @@
-//! Rods that stand for slender solids.
+//! Rods in place of slender solids.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -8,7 +8,7 @@ use crate::elements::material::{Material, Plane, Substance};
 use crate::elements::rod::{SectionNumbers, SolidAxis};
 
 impl Body {
-    /// The rod of so many `elements` that stands for a slender solid, a single body, and the axis along which it lies.
+    /// The rod of so many `elements` that replaces a slender solid, a single body, and the axis along which it lies.
     ///
     /// Its section is cut from the cells: area, principal second moments, Saint-Venant's constant of torsion, shear areas. Its law has
     /// the moduli of the solid at small strains; in plane strain that of bending is E/(1 - nu^2).

@@ -141,17 +141,17 @@ impl Body {
         }
     }
 
-    /// How strain is measured.
+    /// Its strain measure.
     pub fn strain(&self) -> Strain {
         self.continua[0].strain
     }
 
-    /// How inertia is shared out among the nodes.
+    /// Distribution of its inertia to the nodes.
     pub fn inertia_kind(&self) -> Inertia {
         self.recipe().inertia
     }
 
-    /// Where it resists a change of its volume.
+    /// Its treatment of volumetric strain.
     pub fn dilatation(&self) -> Dilatation {
         self.recipe().dilatation
     }
@@ -217,7 +217,7 @@ impl Body {
         self.recipe().regions.len()
     }
 
-    /// How viscosity acts.
+    /// Its kind of viscosity.
     pub fn viscosity(&self) -> Viscosity {
         self.continua[0].viscosity
     }
@@ -338,7 +338,7 @@ impl Body {
     /// They are those of the cells around it, extrapolated from where they are computed, in the mean weighted
     /// by the volumes of the cells. With quadratic cells fields that are linear in space come out exact.
     ///
-    /// Where materials meet, it is a mean over both: look at [`cell_fields`](Self::cell_fields) there.
+    /// At the boundary of materials it is a mean over both: use [`cell_fields`](Self::cell_fields) there.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh, Strain};

@@ -1,4 +1,4 @@
-//! The state of the Maxwell branches of a body, as it is kept outside of a run.
+//! The state of the Maxwell branches of a body, as it is stored outside of a run.
 
 /// Internal variables of the [Maxwell branches](crate::MaxwellBranch) of a body.
 #[derive(Debug, Clone, PartialEq)]

@@ -110,7 +110,7 @@ impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
         &mut internal[self.first..][..self.branch.components()]
     }
 
-    /// How a change of the strain passes to E - G in a step of the parameter `gamma`: see `Step`.
+    /// Derivative of E - G by the strain in a step of the parameter `gamma`: see `Step`.
     fn step(&self, gamma: f64, internal: &[f64]) -> Step {
         self.branch.step::<M>(gamma, &self.apart(internal))
     }

@@ -55,17 +55,17 @@ impl BodyBuilder {
         self.each(|recipe| recipe.area = Some(area))
     }
 
-    /// How strain is measured (default: Green).
+    /// Strain measure (default: Green).
     pub fn strain(self, strain: Strain) -> Self {
         self.each(|recipe| recipe.strain = strain)
     }
 
-    /// How viscosity acts. Default: natural with Cauchy strain, objective with Green strain.
+    /// Kind of viscosity. Default: natural with Cauchy strain, objective with Green strain.
     pub fn viscosity(self, viscosity: Viscosity) -> Self {
         self.each(|recipe| recipe.viscosity = Some(viscosity))
     }
 
-    /// How inertia is shared out among the nodes (default: consistently).
+    /// Distribution of inertia to the nodes (default: consistent).
     pub fn inertia(self, inertia: Inertia) -> Self {
         self.each(|recipe| recipe.inertia = inertia)
     }
@@ -94,7 +94,7 @@ impl BodyBuilder {
         self.each(|recipe| recipe.plane = Some(plane))
     }
 
-    /// Where a change of volume is resisted: at each point (default), or projected onto few functions of each cell,
+    /// Treatment of volumetric strain: at each point (default), or projected onto few functions of each cell,
     /// which does not lock where the body is nearly incompressible.
     pub fn dilatation(self, dilatation: Dilatation) -> Self {
         self.each(|recipe| recipe.dilatation = dilatation)
@@ -166,7 +166,7 @@ impl BodyBuilder {
         })
     }
 
-    /// The smaller bodies that stand for these: on one side of a plane of symmetry, with half of the point masses on it, or in a `plane`, as
+    /// The smaller bodies that represent these: on one side of a plane of symmetry, with half of the point masses on it, or in a `plane`, as
     /// thick as the prism is long. One that is left of several keeps the names of its nodes among these.
     ///
     /// # Errors

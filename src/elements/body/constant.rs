@@ -1,6 +1,6 @@
 //! The constant parts of stiffness and damping.
 //!
-//! Mass damping, -a M v, is a constant part of D whatever the viscosity is: a product with one number per
+//! Mass damping, -a M v, is a constant part of D with any viscosity: a product with one number per
 //! pair of nodes (with lumped inertia per node) beside the loop over cells or objective viscosity. Where
 //! natural viscosity is a product with B, B contains it.
 

@@ -1,4 +1,4 @@
-//! The stress of fibres that pull by Hill's law, and its tangents: it depends on how long they are, and on how fast that changes.
+//! The active stress of fibres by Hill's law, and its tangents: it depends on their length, and on its rate.
 //!
 //! With f = F a, the stretch l = |f|, n = f/l, its rate l' = n . f' and the stress per natural section p(l, l'), the first Piola stress is p n a^T, so that
 //!

@@ -1,4 +1,4 @@
-//! Where a body resists a change of its volume.
+//! Treatment of volumetric strain: pointwise, mean or projected.
 //!
 //! With a mean dilatation, G_a = sum w dg/dF g_a and the cell volume V, forces and tangents are
 //!
@@ -14,12 +14,12 @@ use crate::base::input::InputError;
 use crate::elements::material::Plane;
 use crate::elements::mesh::CellKind;
 
-/// Where a body resists a change of its volume.
+/// Treatment of volumetric strain in a body, against locking.
 ///
 /// A nearly incompressible body (rubber, Poisson's ratio above 0.45) has to keep its volume wherever that is
 /// evaluated. At each point of a cell these are more conditions than its nodes can meet: the cell locks, and
 /// bends too little. Projected onto few functions of the cell they are few: one for the mean, one and one more for each
-/// axis of space for linear functions. The law's energy U of the volume is taken at the projection of its measure: of J
+/// axis of space for linear functions. The law's energy U of the volume is evaluated at the projection of its measure: of J
 /// with the laws of rubber, of tr(U - I) with the corotated law, of tr E with linear elasticity, St. Venant-Kirchhoff
 /// material and Maxwell branches. Energy is conserved, and tangents are symmetric, as without it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -35,7 +35,7 @@ pub enum Dilatation {
     /// Projected onto linear functions of the undeformed position in each cell (Q2/P-1, with a discontinuous linear
     /// pressure; D. Boffi, L. Gastaldi, Mathematical Models and Methods in Applied Sciences 12 (2002) 1589-1603): for
     /// quadratic hexahedra and quadrilaterals, and for triangles and tetrahedra with bubbles ([`Mesh::with_bubbles`](crate::Mesh::with_bubbles);
-    /// M. Crouzeix, P.-A. Raviart, RAIRO 7 (1973) R3, 33-75). Hexahedra of 20 nodes have more pressures than their faces can feel: displacements
+    /// M. Crouzeix, P.-A. Raviart, RAIRO 7 (1973) R3, 33-75). Hexahedra of 20 nodes have more pressures than their faces can control: displacements
     /// are better than with the mean, pressures are not reliable.
     Linear,
 }

@@ -45,7 +45,7 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
     /// For each cell, sum w N_a N_b (m^3).
     pub(super) products: Arc<Vec<[[f64; N]; N]>>,
     pub(super) quadratic: bool,
-    /// Where a change of volume is resisted.
+    /// Treatment of volumetric strain.
     pub(super) dilatation: Dilatation,
     /// The linear modes of a projected dilatation at the strain points, stored as these are; empty if it has none.
     pub(super) modes: Arc<Vec<[Packed; M]>>,

@@ -1,6 +1,6 @@
 //! The fibres of a body: strings through the strain points of its cells.
 //!
-//! A fibre at a point of a cell sees one direction of the strain there. It is a cell of one dimension on the
+//! A fibre at a point of a cell depends on the strain in its direction there. It is a cell of one dimension on the
 //! same nodes: its gradients are those of the shape functions along it, and its frame is its direction.
 
 use super::contraction::{Contraction, ContractionTangent};
@@ -27,7 +27,7 @@ pub(super) trait Reinforced {
     ) -> Result<Box<dyn Strings>, InputError>;
 }
 
-/// Fibres in cells, whatever these are.
+/// Fibres in cells of any kind.
 pub(super) trait Strings: Send + Sync {
     fn add_forces(&self, law: &Fibre, u: &[f64], forces: &mut [f64]) -> Result<(), Failure>;
 

@@ -1,6 +1,6 @@
 //! Strain, stress and energy density of the cells, for output.
 //!
-//! Tensors are those of the three-dimensional body that a cell stands for. With the frame F_0, E and
+//! Tensors are those of the three-dimensional body that a cell represents. With the frame F_0, E and
 //! S of a cell, and n its unit normals (none in a solid, one in a plane or membrane, two in a string):
 //!
 //! | | strain | stress |
@@ -351,7 +351,7 @@ fn swelling<L: ElasticLaw, const M: usize, const D: usize>(
     }
 }
 
-/// The mean of `points`, each with the volume that it stands for.
+/// The mean of `points`, each with the volume that it represents.
 fn mean(points: impl Iterator<Item = (f64, PointField)>) -> CellField {
     let (mut volume, mut energy, mut sum) = (0.0, 0.0, Tensors::default());
     for (share, point) in points {

@@ -5,7 +5,7 @@
 //! cells in a row (`contiguous`) node by node. So results are the same to the last bit on all machines. Functions
 //! called in the loop have to be inlined: a separate function would be compiled for the oldest instruction set.
 //!
-//! The shape functions of a cell add up to 1 and their gradients to 0. So displacements are taken relative to
+//! The shape functions of a cell add up to 1 and their gradients to 0. So displacements are relative to
 //! the first node, whose force balances those on the others: this is less work, and forces stay as precise
 //! when the body has moved far.
 //!

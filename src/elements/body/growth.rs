@@ -1,14 +1,14 @@
 //! The elasticity of cells that grow: F = F_e G, and the energy det(G) W(F_e) per natural volume.
 //!
-//! Where they grow alike in all directions, G = g I, F_e = F / g is the gradient of the positions x / g, so that forces, tangents and energies are those of
-//! the elements as they are, at the displacements u' = x / g - X, times powers of g: g^3 U(u') has the forces g^2 f(u') and the tangents g K(u').
+//! Where they grow isotropically, G = g I, F_e = F / g is the gradient of the positions x / g, so that forces, tangents and energies are those of
+//! the elements without growth, at the displacements u' = x / g - X, times powers of g: g^3 U(u') has the forces g^2 f(u') and the tangents g K(u').
 //!
-//! Rods change the strains in which they are free of stress (`elements/rod/growth.rs`).
+//! Rods change their stress-free strains (`elements/rod/growth.rs`).
 //!
-//! Where they grow by direction, or are pressed across their plane as they grow, they have a [law](crate::elements::material::GrownLaw) of
-//! that.
+//! Where they grow by direction, or are compressed across their plane as they grow, they have a [law](crate::elements::material::GrownLaw) of
+//! their own.
 //!
-//! All loops, laws and projected dilatations so serve growth as they are. For growth by direction one law is
+//! So all loops, laws and projected dilatations are used for growth without a change. For growth by direction one law is
 //! compiled that calls the material's (`elements/material/grown.rs`), and not one for each; its direction is
 //! that of the frames of the strain points (`oriented.rs`). Its power is summed point by point
 //! (`fields/grown.rs`) while a strain changes:

@@ -8,7 +8,7 @@ use super::elements::{ElementsOf, pairs};
 use super::regions::{Laws, Regions};
 use crate::base::sparse::NodeMatrix;
 
-/// How the inertia of the cells is shared out among their nodes.
+/// Distribution of the inertia of cells to their nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Inertia {
     /// M as it follows from the shape functions: inertia couples the nodes of a cell.

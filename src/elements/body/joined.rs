@@ -2,7 +2,7 @@
 //!
 //! Nodes and cells of one body come after those of the other, node sets have the names of their bodies before
 //! their own, and M, K and B are blocks on the diagonal. Forces, constraints, sensors, samples and
-//! checkpoints know nodes of any body; only what depends on the make of a body asks for its parts. All
+//! checkpoints know nodes of any body; only code that depends on the contents of a body asks for its parts. All
 //! numbers are to the last bit those of each body alone, as the sums at a node are the same. Finer meshes and
 //! advice are for single bodies: new nodes of the first would come between, and nodes of the second could not
 //! keep their numbers.
@@ -38,7 +38,7 @@ impl Joined {
 pub struct Part<'a> {
     /// Its name; empty for a single body that has none.
     pub name: &'a str,
-    /// The body by itself.
+    /// The single body.
     pub body: &'a Body,
     /// Numbers of its nodes among those of all (from 0).
     pub nodes: Range<usize>,
@@ -210,7 +210,7 @@ impl Body {
         &self.continua[self.continua.partition_point(|continuum| continuum.cells.end <= cell)]
     }
 
-    /// How strain is measured in a cell (counted from 0 among those of all).
+    /// Strain measure of a cell (counted from 0 among those of all).
     pub(crate) fn strain_of(&self, cell: usize) -> Strain {
         self.continuum_of(cell).strain
     }
@@ -238,7 +238,7 @@ impl Body {
         self.continua.iter().map(|own| own.material.wave_speed()).fold(0.0, f64::max)
     }
 
-    /// Whether it is one body by itself.
+    /// Whether it is a single body.
     pub(crate) fn is_single(&self) -> bool {
         self.joined.is_empty()
     }
@@ -248,7 +248,7 @@ impl Body {
         if self.is_single() {
             return Ok(());
         }
-        let help = format!("{what} can be had of one body by itself only");
+        let help = format!("{what} needs a single body");
         Err(InputError::new("number of bodies", self.joined.len(), help))
     }
 

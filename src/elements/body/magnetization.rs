@@ -1,4 +1,4 @@
-//! A body whose cells are magnetized.
+//! Magnetized cells of a body.
 
 use super::assembled::Body;
 use super::magnetized_points::MagnetizedPoints;

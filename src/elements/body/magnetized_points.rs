@@ -93,7 +93,7 @@ pub(crate) struct TooNear {
     pub(crate) distances: [f64; 2],
 }
 
-/// Cells that are magnetized, whatever these are.
+/// Magnetized cells of any kind.
 pub(crate) trait MagnetizedPoints: Send + Sync {
     /// Adds the forces on the nodes under the displacements `u` (m).
     ///
@@ -276,7 +276,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Magnetizabl
                 let poles = own.next().unwrap_or([0.0; N]);
                 MagnetizedPoint { place: sum(&self.values[q]), moment: sum(&poles), poles }
             });
-            // a cell is as long as so many points side by side, and each stands for the field around it
+            // a cell is as long as so many points side by side, and each represents the field around it
             let points_along = (Q as f64).powf(1.0 / M as f64);
             magnetized.push(MagnetizedCell {
                 number: first + cell,

@@ -1,6 +1,6 @@
 //! Numbers of nodes and entries of a body among others.
 
-/// Where the nodes of a body are among those of several.
+/// Position of the nodes of a body among those of several.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Offset {
     /// The first node, and the entry in the pattern of all nodes at which its row begins.

@@ -1,4 +1,4 @@
-//! Dividing the work on cells among threads.
+//! Division of the work on cells among threads.
 //!
 //! Each share is a range of nodes, and computes the contributions of all cells that touch it to these nodes. Cells on
 //! the border between shares are computed by each of them. So no two shares write to the same entry,

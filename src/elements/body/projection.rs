@@ -6,7 +6,7 @@
 //!
 //! The energy int U(projected g) dV then has the derivative int q dg dV with q the projection of U' of the projected g. With
 //! G_k = int p_k dg dV (p_0 = 1), the tangent is that of g at a constant q, and sum A_kl G_k G_l^T with
-//! A_kl = int U'' p_k p_l dV / V^2. In the mean alone A_00 = U''/V is all that is left of it.
+//! A_kl = int U'' p_k p_l dV / V^2. For the mean alone only A_00 = U''/V remains.
 //!
 //! The modes are linear in space and not in the reference cell, so that they keep their order in distorted
 //! cells.

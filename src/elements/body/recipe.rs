@@ -1,4 +1,4 @@
-//! The options by which a body is made of a mesh.
+//! The options by which a body is built from a mesh.
 
 use super::dilatation::Dilatation;
 use super::inertia::Inertia;

@@ -2,7 +2,7 @@
 //!
 //! Zienkiewicz and Zhu's estimate (Int. J. Numer. Meth. Eng. 24, 1987): the error of the strains of linear
 //! cells is about their difference from a continuous field, which at each node is the mean of the cells
-//! around it. Each material has its own mean, for strains do jump where materials meet.
+//! around it. Each material has its own mean, as strains jump at interfaces of materials.
 
 use super::elements::ElementsOf;
 use super::regions::Regions;

@@ -1,4 +1,4 @@
-//! The fibres of a body, whatever its elements are.
+//! The fibres of a body with any elements.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The Maxwell branches of a body, whatever its elements are.
+//! The Maxwell branches of a body with any elements.
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! The cells of a body of revolution: those of its section in the plane (r, z), turned about the axis r = 0.
+//! The cells of a body of revolution: those of its section in the plane (r, z), rotated about the axis r = 0.
 //!
 //! A point is one of space, with the axes r, z and around. To the displacement gradient in the plane comes the hoop strain
 //! u_r / R, so that laws are those of solids, and volumes are those of a whole turn. The change of F by the motion of node a

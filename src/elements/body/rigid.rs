@@ -1,4 +1,4 @@
-//! Rigid pieces: nodes that move as those of a frame do.
+//! Rigid pieces: nodes that follow those of a frame.
 //!
 //! The displacements of the nodes of a rigid piece are affine functions of their undeformed positions x, and so
 //! weighted means of those of d + 1 nodes of it, its frame:
@@ -11,11 +11,11 @@
 //! strain. The edges of the frame keep it at 0, as constraints of the motion
 //! (`dynamics/linear/edges.rs`), and in equilibria the elasticity of the piece keeps it small.
 //!
-//! The frame spans a large simplex, each node the farthest from what those before it span, so that no weight
-//! is large. Dependent nodes stay in the state with their own u and v: forces, contact, sensors, samples and
-//! checkpoints find them where they find those of any node. Only the algebra knows of pieces: `shares` are
-//! the weights, `carry` moves dependent nodes along, `gather` moves nodal forces to the frames, where they do
-//! the same work. The elasticity of a piece in equilibria is a force that motions leave out
+//! The frame spans a large simplex, each node the farthest from the span of those before it, so that no weight
+//! is large. Dependent nodes remain in the state with their own u and v: forces, contact, sensors, samples and
+//! checkpoints treat them as any node. Only the linear algebra has pieces: `shares` are
+//! the weights, `carry` moves dependent nodes with their frames, `gather` moves nodal forces to the frames, where they do
+//! the same work. The elasticity of a piece in equilibria is a force that motions omit
 //! (`Capabilities::keeps_rigid`). `docs/decisions/0012-rigid-pieces.md` has the alternatives.
 
 use std::collections::BTreeSet;

@@ -1,4 +1,4 @@
-//! Magnetized elements of rods: moments that turn and stretch with their sections, as those of cells do with F.
+//! Magnetized elements of rods: moments that rotate and stretch with their sections, as those of cells do with F.
 //!
 //! Half of the volume of an element belongs to each of its ends. With the directors d_k = (p_k - x)/a_k there, and the mean m of the axes of both ends across
 //! their sections, the remanence b = sum b_k d_k + b_3 r_3 has the moment

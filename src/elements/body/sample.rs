@@ -1,4 +1,4 @@
-//! The forces of some cells: a sample that stands for all, each times a weight, and those of each cell by itself.
+//! The forces of some cells: a weighted sample that represents all, and those of single cells.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -110,7 +110,7 @@ impl Continuum {
 }
 
 impl Elastic {
-    /// The same by some cells (from 0 among those of all bodies), each times its weight; those of weight 0 are left out.
+    /// The same by some cells (from 0 among those of all bodies), each times its weight; those of weight 0 are omitted.
     /// `pattern` couples the nodes of each of these cells (as [`Body::cell_pairs`] lists them) and is not widened from
     /// another.
     pub(crate) fn sampled(&self, weights: &BTreeMap<usize, f64>, pattern: &NodePattern) -> Self {
@@ -163,7 +163,7 @@ impl Elastic {
 /// The number of a cell, and its nodes.
 type Cell = (usize, Vec<usize>);
 
-/// The elastic and viscous forces of each cell by itself.
+/// The elastic and viscous forces of single cells.
 pub(crate) struct ByCell {
     /// Cells that share no node, with their nodes and the force of all of them: each node has the force of one cell.
     colours: Vec<(Elastic, Vec<Cell>)>,

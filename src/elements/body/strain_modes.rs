@@ -61,7 +61,7 @@ pub(super) fn modes(shapes: usize) -> usize {
     1 + shapes + shapes * (shapes + 1) / 2
 }
 
-/// Part of the multiplications for all cells that those for the modes of their strains may take: what a sample of the cells
+/// Fraction of the multiplications for all cells that those for the modes of their strains may need: what a sample of the cells
 /// would take.
 const OF_CELLS: usize = 8;
 

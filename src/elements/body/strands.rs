@@ -1,4 +1,4 @@
-//! Fibres that pull by a stress of their own: muscles.
+//! Fibres with an active stress: muscles.
 
 use super::assembled::Body;
 use super::contraction::Contraction;

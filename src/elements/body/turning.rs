@@ -1,7 +1,7 @@
-//! Steps along which cells turn.
+//! Steps along which cells rotate.
 //!
-//! Displacements are straight, turns are not: a cell that turns by the angle theta along its velocities is stretched by about theta^2/2. In
-//! a slender body, which resists bending far less than stretching, the energy of that is all that Newton's method sees of a long step.
+//! Displacements are straight, rotations are not: a cell that rotates by the angle theta along its velocities is stretched by about theta^2/2. In
+//! a slender body, which resists bending far less than stretching, this energy dominates a long step of Newton's method.
 //! So a step of displacement gradients dH at the gradient F is applied as one of rates, dH = L F: as a rotation by the skew part W of L
 //! and a strain by its symmetric part D:
 //!
@@ -10,7 +10,7 @@
 //! ```
 //!
 //! (the rotation-strain coordinates of J. Huang et al., *Interactive shape interpolation through controllable dynamic deformation*, IEEE
-//! Transactions on Visualization and Computer Graphics 17, 2011). These gradients are hardly those of displacements; nearest to
+//! Transactions on Visualization and Computer Graphics 17, 2011). These gradients are in general not those of displacements; nearest to
 //! them, in the mean square, are those of a Poisson equation. Where cells do not fill space, their normals turn as they do.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};

@@ -1,4 +1,4 @@
-//! The inertia of a rigid body as a whole.
+//! The inertia of a single rigid body.
 //!
 //! All displacements of a rigid body are affine functions of the undeformed position x, and so are the weights
 //! w_a(x) = alpha_a + beta_a.(x - c) by which they follow from those of the nodes of its frame (`rigid.rs`). Its inertia
@@ -11,7 +11,7 @@
 //! So all mass is that of the nodes of the frame; the others are carried along.
 //!
 //! S is tr(I)/2 - I in space, with the moments of inertia I (`elements/material/rigid_mass.rs`). Everything
-//! that reads M (gravity, energies, momenta, the centre) finds that matrix in the place of the one of the
+//! that reads M (gravity, energies, momenta, the centre) uses that matrix in place of that of the
 //! cells. Its row sums may be below 0, as those of quadratic cells may be.
 
 use nalgebra::{DMatrix, DVector};

@@ -94,7 +94,7 @@ pub struct FlowDerivatives {
 }
 
 impl FlowDerivatives {
-    /// Zeros for these numbers of `rooms` (chambers and lag states) and unknowns; walls are among `dofs` displacement components.
+    /// Zeros for these numbers of `rooms` (reservoirs: chambers and lag states) and unknowns; walls are among `dofs` displacement components.
     pub(crate) fn zeros([rooms, unknowns]: [usize; 2], dofs: usize) -> Self {
         let pair = |first: usize, second: usize| [vec![0.0; first], vec![0.0; second]];
         Self {

@@ -106,7 +106,7 @@ impl DerefMut for ForceVector {
     }
 }
 
-/// Where the potential energy of a force is accounted for.
+/// Account of the potential energy of a force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reservoir {
     /// Strain energy.
@@ -121,7 +121,7 @@ pub enum Reservoir {
     None,
 }
 
-/// A step that an integrator has taken: the states at both ends.
+/// A completed step of an integrator: the states at both ends.
 pub struct Step<'a> {
     /// Times (s).
     pub times: [f64; 2],

@@ -37,11 +37,11 @@ use crate::base::tensor::{Matrix, dot, product, times};
 /// released, these keep part of the deformation. With the von Mises stress q of the spring, G' = max(0,
 /// 1 - Y/q) dev(E - G)/tau (P. Perzyna, Advances in Applied Mechanics 9 (1966) 243-377, with a linear
 /// overstress): the stress of shear relaxes to q = Y and no further, that of a change of volume not at all. Beside a law of rubber the
-/// same factor stands before r, and the last term is left out.
+/// same factor multiplies r, and the last term is omitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaxwellBranch {
     /// Share g of stiffness (1), above 0: Young's modulus of the spring over that of the material, which is
-    /// what remains when all branches have relaxed.
+    /// the remainder when all branches have relaxed.
     pub share: f64,
     /// Relaxation time tau (s), above 0.
     pub time: f64,
@@ -102,7 +102,7 @@ impl Relaxing {
         let flowing = (yield_stress > 0.0).then(|| Flowing::new(&hooke, dimension, yield_stress));
         let is_free = hooke.is_free_across(dimension);
         let rubber = matches!(elastic, Elastic::ByPoint(_)).then(|| {
-            // a free thickness follows the motion, whatever the bulk modulus is
+            // a free thickness follows the motion with any bulk modulus
             let Lame { lambda, mu } = match is_free {
                 true => spring.elastic(),
                 false => spring.bounded(spring.young),
@@ -170,7 +170,7 @@ impl Relaxing {
         }
     }
 
-    /// How a change of the strain passes to E - G in a step of the parameter `gamma` (s), where E - G is
+    /// Derivative of E - G by the strain in a step of the parameter `gamma` (s), where E - G is
     /// `apart` now.
     pub(crate) fn step<const M: usize>(&self, gamma: f64, apart: &Components) -> Step {
         match &self.flowing {

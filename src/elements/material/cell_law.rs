@@ -1,4 +1,4 @@
-//! Elastic laws as the loops over cells see them: by the deformation of a point, whether their formulas are compiled into
+//! Interface of elastic laws for loops over cells: by the deformation of a point, whether their formulas are compiled into
 //! the loop or are called.
 
 use super::deformation::Deformation;

@@ -1,4 +1,4 @@
-//! How the neighbourhood of one point of a cell is deformed.
+//! Deformation at one point of a cell.
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 

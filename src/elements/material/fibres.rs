@@ -1,4 +1,4 @@
-//! Fibres in a material, and which way they run.
+//! Fibres in a material, and their directions.
 //!
 //! Fibres take tension alone. The constant K contains them as if they were in tension, which is the stiffer
 //! case.
@@ -31,7 +31,7 @@ use crate::base::vector::{dot, norm};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fibres {
-    /// Which way they run.
+    /// Their direction.
     pub course: FibreDirection,
     /// Young's modulus (Pa, above 0) that they add in their direction when they are slightly stretched: that
     /// of a fibre, times its share of the section.
@@ -40,7 +40,7 @@ pub struct Fibres {
     pub stiffening: f64,
 }
 
-/// Which way fibres run in the undeformed shape.
+/// Direction of fibres in the undeformed shape.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FibreDirection {
     /// Along this vector, of any length above 0. In membranes only its component along them counts.
@@ -141,7 +141,7 @@ impl FibreDirection {
         numbers
     }
 
-    /// The same as helices, which climb along the axis by an `angle` (rad); what runs along a vector does not change.
+    /// The same as helices, which climb along the axis by an `angle` (rad); fibres along a vector do not change.
     pub(crate) fn with_pitch(mut self, angle: f64) -> Self {
         if let Self::Around { pitch, .. } = &mut self {
             *pitch = angle;

@@ -1,4 +1,4 @@
-//! How the internal strain of a branch with a yield stress flows.
+//! Flow rule of the internal strain of a branch with a yield stress.
 //!
 //! With the spring's stress S, its von Mises stress q and its shearing part Pi S, G' = f Pi S / (2 mu tau),
 //! f = max(0, 1 - Y/q), is the gradient of <q - Y>^2 / (6 mu tau) by S. So S : G' >= 0, and the stiffness in
@@ -46,7 +46,7 @@ fn dot<const M: usize>(a: &Components, b: &Components) -> f64 {
     (0..a.len()).map(|v| times(v) * a[v] * b[v]).sum()
 }
 
-/// How a change X of the strain passes to E - G in a step: P X = `part` (X + `swelling` times its
+/// Effect of a change X of the strain on E - G in a step: P X = `part` (X + `swelling` times its
 /// sphere - `drop` times `back` (`along` : X)).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Step {

@@ -2,7 +2,7 @@
 //! G = g_a a a^T + g_t (I - a a^T).
 //!
 //! With C_e = G^-1 C G^-1 everything follows in the coordinates of the cell: S = det(G) G^-1 S_e G^-1 and dS/dE likewise. So F and the gradients of
-//! the shape functions stay those of the cell, and the formulas of all laws as they are.
+//! the shape functions remain those of the cell, and the formulas of all laws are unchanged.
 //!
 //! Where there is no strain across a cell of two dimensions, growth is compressed there to the stretch 1/g_t: then the law is that of a
 //! solid, which has the same formulas, and components across the cell are omitted from its stress.

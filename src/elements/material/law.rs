@@ -1,9 +1,9 @@
 //! Interface of material laws: one formula for energy, stress and tangent, shared by forces, tangents of forces
 //! and fields.
 //!
-//! Laws see one point of a cell of dimension `M`, by its strain in the coordinates of the cell. They are
+//! Laws are evaluated at one point of a cell of dimension `M`, by its strain in the coordinates of the cell. They are
 //! generic over a number `T` that may be a lane of several points, so no branch may depend on a value: where
-//! a law has meaning is given by a separate number ([`ElasticLaw::domain`]), not by its stress.
+//! a law is defined is given by a separate number ([`ElasticLaw::domain`]), not by its stress.
 //!
 //! A cell outside of the domain (det F <= 0) makes the evaluation fail recoverably, with the name of the
 //! cell: the integrator tries a smaller step, and the run ends with that message if none helps.
@@ -26,7 +26,7 @@ pub(crate) trait Blocks<T, const D: usize> {
 /// volume that is 0 at rest. So U may be given a projection of g onto few functions of a cell ("projected
 /// dilatation", such as its mean) in place of g at each point; then `pull` is U' of that, projected in turn, else `None`.
 pub(crate) trait ElasticLaw {
-    /// Whether strains are taken as small: then E is Cauchy's strain, and natural and present shape count as
+    /// Whether strains are assumed small: then E is Cauchy's strain, and natural and present shape count as
     /// the same; else E is Green's.
     const SMALL_STRAIN: bool = false;
 

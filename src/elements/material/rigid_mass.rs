@@ -13,7 +13,7 @@ pub enum Moments {
     /// the others.
     Principal([f64; 3]),
     /// The matrix of the moments about x, y and z of the undeformed body (kg m^2): symmetric, with the moments
-    /// int (y^2 + z^2) dm on its diagonal and the products -int x y dm beside it.
+    /// int (y^2 + z^2) dm on its diagonal and the products -int x y dm off it.
     Matrix([[f64; 3]; 3]),
 }
 
@@ -49,7 +49,7 @@ impl RigidMass {
         Self { mass, centre: None, moments: None }
     }
 
-    /// The same with its centre of mass at `centre` (m), a point of the undeformed body or beside it; it needs
+    /// The same with its centre of mass at `centre` (m), a point inside or outside of the undeformed body; it needs
     /// [`moments`](Self::moments), too.
     pub fn centre(self, centre: impl Into<Vec<f64>>) -> Self {
         Self { centre: Some(centre.into()), ..self }

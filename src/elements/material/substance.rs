@@ -8,7 +8,7 @@ use crate::base::input::{InputError, not_negative};
 /// A material with its elastic law, damping in proportion to its mass, springs that relax, and fibres.
 ///
 /// [`Material::law`], [`Material::mass_damping`] and [`Material::maxwell`] make it. A [`Material`] alone
-/// counts as one with the law that the body's [`Strain`](crate::Strain) stands for, without the others.
+/// counts as one with the law of the body's [`Strain`](crate::Strain), without the others.
 ///
 /// ```
 /// use pliant::{Body, Law, Material, Mesh, SolidCells};
@@ -110,7 +110,7 @@ impl Material {
     /// The cells of a connected rigid piece give its shape and its inertia. Its nodes move as those of a triangle (in
     /// space a tetrahedron) do, whose edges keep their lengths, so that it has 3 (6) degrees of freedom. Nothing
     /// is stressed in it. In an [equilibrium](crate::Scene::equilibrium) its elasticity keeps its shape instead, by
-    /// Young's modulus: [`RIGID_YOUNG`](Self::RIGID_YOUNG), or what is set in its place. Rigid pieces are for
+    /// Young's modulus: [`RIGID_YOUNG`](Self::RIGID_YOUNG), or the value set in its place. Rigid pieces are for
     /// the methods `cvode-bdf`, `cvode-adams`, `arkode`, `rosenbrock` and `rk`, from which `auto` chooses, and for Green's
     /// strain.
     ///
@@ -241,7 +241,7 @@ impl Substance {
     /// deformation: the branch pulls with at most Y against the elasticity E of the material, so that strain
     /// above about Y/E springs back.
     ///
-    /// The stress is the von Mises stress of the second Piola stress, which is taken in the axes of the
+    /// The stress is the von Mises stress of the second Piola stress, in the axes of the
     /// undeformed body; its deviator relaxes. In a body that is sheared and held, it is Y + (q - Y)
     /// exp(-t/tau); a string takes 1.5/(1 + nu) times as long, as stretching shears it less. Motion and
     /// equilibria begin as with [`maxwell`](Self::maxwell), in a shape in which the branches have no stress.

@@ -35,7 +35,7 @@ impl Mesh {
         all
     }
 
-    /// The faces of cells that belong to one cell only, whatever the dimension of space: those on the rim of
+    /// The faces of cells that belong to one cell only, in any dimension of space: those on the rim of
     /// a membrane, the ends of a string.
     pub(crate) fn outer_faces(&self) -> Vec<Face> {
         self.outer_faces_of_cells().into_iter().map(|(_, face)| face).collect()

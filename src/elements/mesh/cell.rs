@@ -80,7 +80,7 @@ impl FaceKind {
         }
     }
 
-    /// How many of its nodes are corners: they come first.
+    /// Number of its corner nodes, which come first.
     pub(crate) fn corners(self) -> usize {
         match self {
             Self::Point => 1,

@@ -29,22 +29,22 @@ const ROUNDED: f64 = 1e-6;
 impl Mesh {
     /// Reads a mesh from a file of Gmsh: format MSH 4.1 or 2.2 (which fTetWild and meshio write, too), text or binary.
     ///
-    /// Coordinates are taken as metres; for a drawing in millimetres, give Gmsh `Mesh.ScalingFactor = 0.001`.
+    /// Coordinates are in metres; for a drawing in millimetres, give Gmsh `Mesh.ScalingFactor = 0.001`.
     ///
     /// - **Cells** are the elements of the highest dimension, in the order of the file. All must be of one
     ///   kind: lines of 2 nodes, triangles of 3 or 6, quadrilaterals of 4 or 9, tetrahedra of 4 or 10, hexahedra
     ///   of 8, 20 (`Mesh.SecondOrderIncomplete = 1`) or 27. If physical groups exist, Gmsh saves only the
     ///   elements in them.
     /// - **Nodes** keep the order of the file; those that belong to no cell (points of the geometry, centres
-    ///   of circles) are left out, and the others are numbered without gaps. A file without such nodes whose
+    ///   of circles) are omitted, and the others are numbered without gaps. A file without such nodes whose
     ///   tags ascend from 1, as Gmsh writes them after meshing, keeps its tags as node numbers.
     /// - **Node sets** are the physical groups of all dimensions: all nodes of cells on their
     ///   points, curves, surfaces or volumes, ascending. Groups of the same name become one; a group
-    ///   without a name is called by its tag, as in `curve 7`; one without nodes of cells is left out.
+    ///   without a name is called by its tag, as in `curve 7`; one without nodes of cells is omitted.
     /// - **Cell groups** are the physical groups of the cells' own dimension: regions, for
     ///   [`CellSelection::Group`](crate::CellSelection::Group).
     /// - **Space** has as many dimensions as the body needs: faces at the same z lie in the plane, and a line with y = z = 0 on
-    ///   an axis. A z that is not 0 is left out with a [note](Self::notes), and so is one that differs by less than 1e-6 of the size.
+    ///   an axis. A z that is not 0 is ignored with a [note](Self::notes), and so is one that differs by less than 1e-6 of the size.
     ///   Lines are otherwise strings in the plane or in space; for faces in space see [`read_gmsh_in`](Self::read_gmsh_in).
     /// - **Orientation**: cells that run the wrong way round (clockwise in the plane) are turned over. Unless these are all cells of
     ///   their entity, because it was drawn so, a note says how many.

@@ -15,7 +15,7 @@ use crate::base::vector::{distinct, padded};
 /// Equal positions may differ by this fraction of the size of a mesh: round-off when it is made.
 const SAME: f64 = 1e-9;
 
-/// Where the middle of all `meshes` is on an axis (m), and the mirror images of all nodes in the plane there, counted through all meshes:
+/// The middle of all `meshes` on an axis (m), and the mirror images of all nodes in the plane there, counted through all meshes:
 /// those of each mesh in itself or in one other. `None` if not every node has one.
 pub(crate) fn mirrored(meshes: &[&Mesh], axis: usize) -> Option<(f64, Vec<usize>)> {
     let along =

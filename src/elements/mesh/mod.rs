@@ -207,7 +207,7 @@ impl Mesh {
         }
     }
 
-    /// Whether it was read from a file, which knows no shape but that of the cells.
+    /// Whether it was read from a file, which has no shape but that of the cells.
     pub(crate) fn is_from_file(&self) -> bool {
         self.file.is_some()
     }
@@ -464,7 +464,7 @@ impl Mesh {
     }
 }
 
-/// The first two cells that have the same nodes, in whatever order.
+/// The first two cells that have the same nodes, in any order.
 fn twice<'a>(cells: impl Iterator<Item = &'a [usize]>) -> Option<[usize; 2]> {
     let sorted = cells.map(|cell| {
         let mut nodes = cell.to_vec();

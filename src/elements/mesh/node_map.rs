@@ -1,4 +1,4 @@
-//! Maps of a mesh to a smaller one that stands for it: one side of a plane of symmetry, the section of a prism.
+//! Maps of a mesh to a smaller equivalent one: one side of a plane of symmetry, the section of a prism.
 //!
 //! Each node has an image in the mesh itself: across the plane, or the first node of its line along the axis. What is the same in
 //! an image has its sign along the axis changed, or vanishes there. Faces between nodes of a plane of symmetry are no boundary of the
@@ -10,11 +10,11 @@ use crate::base::vector::{axes_across, distinct};
 /// The map of the nodes and cells of a mesh to those of a smaller one.
 #[derive(Debug, Clone)]
 pub(crate) struct NodeMap {
-    /// The smaller mesh of each body, without point masses; none of a body on the side that is left out.
+    /// The smaller mesh of each body, without point masses; none of a body on the omitted side.
     pub(crate) meshes: Vec<Option<Mesh>>,
     /// The number of the axis across which it is.
     pub(crate) axis: usize,
-    /// Where the prism begins and ends on the axis (m); twice the place of a plane of symmetry.
+    /// Ends of the prism on the axis (m); twice the position of a plane of symmetry.
     pub(crate) ends: [f64; 2],
     /// Whether a half is that above the plane.
     pub(crate) is_upper: bool,
@@ -24,16 +24,16 @@ pub(crate) struct NodeMap {
     pub(crate) images: Vec<usize>,
     /// The image of each cell, of those that have one.
     pub(crate) cell_images: Vec<Option<usize>>,
-    /// The node of the smaller mesh (from 0) that stands for each node; none on the side that is left out.
+    /// The node of the smaller mesh (from 0) that represents each node; none on the omitted side.
     pub(crate) numbers: Vec<Option<usize>>,
     /// The same of the cells.
     pub(crate) cells: Vec<Option<usize>>,
-    /// Nodes of the smaller mesh that stand for none: each with those around it, and their weights.
+    /// Nodes of the smaller mesh that represent none: each with its neighbours, and their weights.
     pub(super) middles: Vec<(usize, Vec<(usize, f64)>)>,
 }
 
 impl NodeMap {
-    /// Whether a half has what is at a place (m) on the axis.
+    /// Whether a position (m) on the axis belongs to the half.
     pub(crate) fn is_kept(&self, x: f64) -> bool {
         (x > self.ends[0]) == self.is_upper
     }
@@ -47,7 +47,7 @@ impl NodeMap {
         !self.is_section() && self.images[node] == node
     }
 
-    /// The node of the smaller mesh that stands for a node or its image.
+    /// The node of the smaller mesh that represents a node or its image.
     pub(crate) fn number(&self, node: usize) -> usize {
         let [own, image] = [node, self.images[node]].map(|node| self.numbers[node]);
         own.or(image).unwrap_or_default()
@@ -91,7 +91,7 @@ impl NodeMap {
         }
     }
 
-    /// The nodes of the smaller mesh that stand for some nodes (from 0) and no others; `None` if others have a part in one of them.
+    /// The nodes of the smaller mesh that represent some nodes (from 0) and no others; `None` if one of them represents others, too.
     pub(crate) fn whole(&self, nodes: &[usize]) -> Option<Vec<usize>> {
         let touched = distinct(nodes.iter().filter_map(|&node| self.numbers[node])).len();
         let first_middle = self.middles.first().map_or(usize::MAX, |(middle, _)| *middle);
@@ -144,7 +144,7 @@ pub(super) fn within(numbers: &[Option<usize>], chosen: &[usize]) -> Vec<usize> 
 }
 
 impl Mesh {
-    /// Takes over the names of nodes and cells of the mesh `of` for those that stand for them, which `nodes` and `cells` tell, and its
+    /// Transfers the names of nodes and cells of the mesh `of` to those that represent them, by `nodes` and `cells`, and its
     /// cuts together with a `plane` of its nodes.
     pub(super) fn take_names(
         &mut self,

@@ -20,7 +20,7 @@ impl Mesh {
     /// The map to the section of a prism along an axis, whose axes are the other two in their order.
     ///
     /// # Errors
-    /// Why the mesh is no prism.
+    /// A mesh that is no prism.
     pub(crate) fn section(&self, axis: usize) -> Result<NodeMap, InputError> {
         let refused = |value: String, help: &str| {
             let help = format!("{help}: take a prism, or leave the scene in space");

@@ -1,4 +1,4 @@
-//! Which way cells run, and what is wrong with those that have no volume.
+//! Orientation of cells, and errors of those without a volume.
 //!
 //! The lengths, areas or volumes that the edges span at the corners tell the cause: all below 0, the nodes
 //! run the wrong way round; of both signs, the cell is a bow-tie (as many of each, in a quadrilateral),
@@ -27,7 +27,7 @@ const OF_HEXAHEDRON: &[&[usize]] = &[
 const FLAT: f64 = 1e-12;
 
 /// Lengths, areas or volumes that the edges at the corners of a cell span, in order; they are below 0 where the cell runs the wrong
-/// way round. Of simplices one corner stands for all.
+/// way round. For simplices one corner is sufficient.
 pub(super) fn corner_measures(
     kind: CellKind,
     cell: &[usize],

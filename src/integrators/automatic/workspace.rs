@@ -20,7 +20,7 @@ pub(super) struct Workspace<const N: usize> {
 pub(super) type Evaluate<E, const N: usize> =
     fn(&mut E, f64, &mut Workspace<N>) -> Result<(), Failure>;
 
-/// Where equations are differentiated: time, unknowns, and their derivatives, which are empty for an ODE.
+/// Point of differentiation: time, unknowns, and their derivatives, which are empty for an ODE.
 pub(super) type Point<'a> = (f64, &'a [f64], &'a [f64]);
 
 impl<const N: usize> Workspace<N> {

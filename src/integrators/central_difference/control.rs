@@ -71,7 +71,7 @@ impl Control {
         self.divide(t, h);
     }
 
-    /// Where the next step from `t` ends: at `towards` if nothing bounds it.
+    /// End of the next step from `t`: `towards` if nothing bounds it.
     pub(super) fn next(&mut self, t: f64, towards: f64) -> f64 {
         if self.step == f64::INFINITY {
             self.divide(t, towards - t);

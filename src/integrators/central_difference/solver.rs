@@ -222,7 +222,7 @@ impl<S: SecondOrder> CentralDifference<S> {
         self.system.prescribe(t, u, v).map_err(|failure| stopped(failure, t, h))
     }
 
-    /// How a call ended.
+    /// Result of a call.
     fn reached(&mut self) -> Reached {
         let t = self.t();
         match self.stop_time.take_if(|stop| *stop == t) {

@@ -1,7 +1,7 @@
 //! Times as integrators count them: from the last start.
 //!
-//! At clock times, such as the seconds since 1970, neighbouring numbers are 2e-7 s apart, and SUNDIALS takes times for the same that differ
-//! by less than a hundred of these. Counted from the start, times are as fine as the steps.
+//! At clock times, such as the seconds since 1970, neighbouring numbers are 2e-7 s apart, and SUNDIALS treats times as equal that differ
+//! by less than a hundred of these. Counted from the start, times resolve the steps.
 
 /// The origin of the times of an integrator.
 #[derive(Clone, Copy, Debug)]
@@ -12,19 +12,19 @@ pub(crate) struct Clock {
     last: f64,
 }
 
-/// Times (s) up to here are fine by themselves: SUNDIALS distinguishes those that are 2e-12 s apart.
+/// Times (s) up to here need no origin: SUNDIALS distinguishes those that are 2e-12 s apart.
 const FINE: f64 = 100.0;
 
-/// Whether times around `t` are fine by themselves.
+/// Whether times around `t` need no origin.
 pub(crate) fn is_fine(t: f64) -> bool {
     t.abs() <= FINE
 }
 
-/// Part of a step by which the time of its end may be rounded.
+/// Fraction of a step by which the time of its end may be rounded.
 const ROUNDED: f64 = 1e-9;
 
 impl Clock {
-    /// A clock that begins at time `t`; it counts from zero where times are fine by themselves.
+    /// A clock that begins at time `t`; it counts from zero where times need no origin.
     pub(crate) fn starting_at(t: f64) -> Self {
         let origin = if is_fine(t) { 0.0 } else { t };
         Self { origin, start: t - origin, last: f64::NAN }
@@ -95,7 +95,7 @@ impl Clock {
     }
 
     /// The time at which a step of this size ends `elapsed` after the origin, and its distance from there: the end, unless rounding of its
-    /// time would count; then the last time before it that is a number. The last one that is shown to the equations stands for the stop
+    /// time would count; then the last time before it that is a number. The last one that is shown to the equations represents the stop
     /// behind it, where another step ends.
     pub(crate) fn last_within(self, elapsed: f64, step: f64) -> (f64, f64) {
         let t = match self.before(elapsed) {

@@ -115,13 +115,13 @@ impl fmt::Display for Callback {
     }
 }
 
-/// Why an integration stopped.
+/// Cause of the failure of an integration.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
-    /// The user's system asked to stop; its error is the source of this one.
+    /// The user's system requested a stop; its error is the source of this one.
     Fatal(Callback),
-    /// The user's system kept rejecting the trial points, whatever the step size.
+    /// The user's system kept rejecting the trial points at any step size.
     Rejected {
         /// Callback that rejected the point.
         callback: Callback,
@@ -130,7 +130,7 @@ pub enum Cause {
         /// The reason that was given.
         message: String,
     },
-    /// The user's system kept returning NaN or infinity, whatever the step size.
+    /// The user's system kept returning NaN or infinity at any step size.
     NotFinite {
         /// Callback that returned it.
         callback: Callback,
@@ -151,9 +151,9 @@ pub enum Cause {
         /// ([`Integrator::notice`](super::Integrator::notice)).
         notice: Option<String>,
     },
-    /// Time stands still: steps as short as rounding allows make no progress. Another call continues.
+    /// No progress in time: steps are as short as round-off. Another call continues.
     StandsStill {
-        /// How many such steps were taken.
+        /// Number of such steps.
         steps: u64,
     },
     /// The tolerances require more digits than double precision has.
@@ -185,7 +185,7 @@ pub enum Cause {
         difference: f64,
     },
     /// The system's own `newton_solve`, as linear solver or preconditioner, answered zero to a right-hand side that is not: Newton's iteration
-    /// would take its first guess for the solution.
+    /// would accept its first guess as the solution.
     WrongSolver,
     /// The Newton matrix could not be factorized.
     LinearSolver,
@@ -201,7 +201,7 @@ pub enum Cause {
         /// The unknown, or one of several.
         unknown: usize,
     },
-    /// An unknown does not keep the sign that `sign_constraints` require, whatever the step size, or the
+    /// An unknown does not keep the sign that `sign_constraints` require at any step size, or the
     /// steps towards its bound have become too small.
     SignConstraint {
         /// The unknown, or the first of several.
@@ -227,7 +227,9 @@ impl Cause {
                 format!("{steps} steps taken, and still short of t = {target:?}")
             }
             Self::StandsStill { steps } => {
-                format!("time stands still: the last {steps} steps led on by no more than rounding")
+                format!(
+                    "no progress in time: the last {steps} steps advanced by no more than round-off"
+                )
             }
             Self::TooMuchAccuracy => "the tolerances ask for more than double precision".into(),
             Self::ErrorTest => "the local error stays too large at the smallest step".into(),
@@ -268,7 +270,7 @@ impl Cause {
         }
     }
 
-    /// The likely reason and what to try.
+    /// The likely reason and the remedy.
     #[must_use]
     pub fn advice(&self) -> &str {
         match self {
@@ -337,12 +339,12 @@ impl Cause {
     }
 }
 
-/// An integration that stopped: where, why, and what to try.
+/// A failed integration: time, cause and remedy.
 #[non_exhaustive]
 pub struct IntegrationError {
     /// The integrator, such as "CVODE".
     pub integrator: &'static str,
-    /// Why it stopped.
+    /// Cause of the failure.
     pub cause: Cause,
     /// Time that was reached.
     pub t: f64,

@@ -60,7 +60,7 @@ impl ExplicitOptions {
     /// These tolerances: local errors are kept below `rtol |y_i| + atol_i` in the root mean square, the
     /// norm of CVODE.
     ///
-    /// `rtol` is at least 1e-14, below which rounding errors drown the error estimate, or 0, where `atol` alone counts. `atol` is positive: the
+    /// `rtol` is at least 1e-14, below which the error estimate is round-off, or 0, where only `atol` counts. `atol` is positive: the
     /// size below which a value is noise.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         Self {

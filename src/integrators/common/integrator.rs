@@ -71,7 +71,7 @@ pub trait Integrator {
     /// For discontinuities at known times. It applies once; `None` removes a stop time.
     ///
     /// # Errors
-    /// [`Error::Input`] if `t` is not finite or lies behind the steps already taken.
+    /// [`Error::Input`] if `t` is not finite or lies before the current time of the integrator.
     fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error>;
 
     /// Makes the integration stop where the equations change at time `t`, without evaluating them at `t` itself.
@@ -146,17 +146,17 @@ pub trait Integrator {
         Self: Sized;
 }
 
-/// The neighbour of time `t` on the way there from `now`.
+/// The neighbouring number of time `t` towards `now`.
 pub(crate) fn number_before(t: f64, now: f64) -> f64 {
     if t > now { t.next_down() } else { t.next_up() }
 }
 
-/// Where an integration call ended.
+/// Reason for the end of an integration call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reached {
     /// At the requested time, or, for a single step, at the end of the step.
     Time,
-    /// Where a root function changes sign; [`Integrator::roots_found`] says which one.
+    /// Sign change of a root function; [`Integrator::roots_found`] returns which one.
     Root,
     /// At the stop time, which is then no longer set.
     StopTime,

@@ -13,7 +13,7 @@ use super::{error::Cause, tolerances::Tolerances};
 #[derive(Debug)]
 pub(crate) struct JacobianCheck {
     tolerances: Tolerances,
-    /// How many Jacobians there were, and the number of the next one to check.
+    /// Number of Jacobians so far, and the number of the next one to check.
     seen: u64,
     next: u64,
     /// State of a generator of random numbers, the same in every run.
@@ -43,7 +43,7 @@ enum RowState {
     Suspicious(f64),
 }
 
-/// Where a Jacobian is checked: dF/dy of equations F(y), or dF/dy + cj dF/dy' of equations F(y, y').
+/// Kind of a checked Jacobian: dF/dy of equations F(y), or dF/dy + cj dF/dy' of equations F(y, y').
 #[derive(Clone, Copy)]
 pub(crate) struct Point<'a> {
     pub(crate) y: &'a [f64],
@@ -62,7 +62,7 @@ pub(crate) enum Wanted<'a> {
     Entry(usize, usize),
 }
 
-/// Writes what is wanted, and returns `false` where it has no value. (`dyn`, as the check would else be compiled once
+/// Writes the requested values, and returns `false` where they are undefined. (`dyn`, as the check would else be compiled once
 /// more for each type of system.)
 pub(crate) type Compute<'a> = dyn FnMut(Wanted<'_>, &mut [f64]) -> bool + 'a;
 

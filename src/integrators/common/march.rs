@@ -21,7 +21,7 @@ pub struct March<S> {
     pub(crate) weight: Vec<f64>,
     /// Counts all times below from the start.
     pub(crate) clock: Clock,
-    /// Time of the present state, and the stop time, as users know them.
+    /// Time of the present state, and the stop time, in the user's time.
     pub(crate) now: f64,
     pub(crate) stop_given: f64,
     pub(crate) stop_time: Option<f64>,
@@ -44,7 +44,7 @@ pub struct March<S> {
     pub(crate) roots: Roots,
     /// Size of the next step, once known.
     pub(crate) next_step: Option<f64>,
-    /// Why a step was last refused, until steps grow again.
+    /// Reason for the last rejection of a step, until steps grow again.
     pub(crate) setback: Option<Cause>,
     pub(crate) statistics: Statistics,
 }

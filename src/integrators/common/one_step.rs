@@ -1,4 +1,4 @@
-//! Integration by one-step methods, whose steps know nothing of each other but their size.
+//! Integration by one-step methods, whose steps share only the step size.
 //!
 //! `rk` and `rosenbrock` are one struct over a [`StepMethod`] (stages, error, size of the next step, dense
 //! output), compiled for each method and system. Central differences, whose steps depend on each other,
@@ -99,7 +99,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         }
     }
 
-    /// How a call ended that did not stop at a root.
+    /// End of a call that did not stop at a root.
     fn reached(&mut self) -> Reached {
         let elapsed = self.march.rest.unwrap_or(self.march.t);
         match self.march.stop_time.take_if(|stop| *stop == elapsed) {

@@ -39,7 +39,7 @@ macro_rules! step_options {
             self
         }
 
-        /// Upper bound of |step size|, for systems with short pulses that a long step would not see.
+        /// Upper bound of |step size|, for systems with short pulses that a long step would miss.
         /// Default: none, which is infinity.
         pub fn max_step(mut self, h: f64) -> Self {
             self.$($field).+.max_step = (h != f64::INFINITY).then_some(h);

@@ -1,4 +1,4 @@
-//! Where root functions change sign within a step.
+//! Location of sign changes of root functions within a step.
 //!
 //! They are followed as by SUNDIALS (K. L. Hiebert, L. F. Shampine, "Implicitly defined output points for
 //! solutions of ODEs", Sandia report SAND80-0180, 1980; CVODE user guide, "Rootfinding").
@@ -59,7 +59,7 @@ impl Roots {
         self.found.fill(0);
     }
 
-    /// Where a function is 0 at `low`, replaces its value by that a little later, in `trial`.
+    /// Replaces the value of a function that is 0 at `low` by that a little later, in `trial`.
     pub(crate) fn leave_zeros(&mut self) {
         for (i, at_low) in self.at_low.iter_mut().enumerate().filter(|(_, value)| **value == 0.0) {
             *at_low = self.trial[i];

@@ -16,7 +16,7 @@ pub struct Statistics {
     /// Evaluations of the right-hand side (ODE), residual (DAE) or forces (second order), without
     /// those of difference quotients.
     pub evaluations: u64,
-    /// How many of them were of the explicit part, if the right-hand side is
+    /// Number of those of the explicit part, if the right-hand side is
     /// [split](crate::integrators::ode::Ode::is_split).
     pub explicit_evaluations: u64,
     /// Evaluations spent on difference quotients for the Jacobian.
@@ -29,7 +29,7 @@ pub struct Statistics {
     pub linear_iterations: u64,
     /// Linear systems that the Krylov method did not solve to its tolerance.
     pub linear_failures: u64,
-    /// Preconditioners made of a fresh Jacobian.
+    /// Preconditioners from a fresh Jacobian.
     pub preconditioner_setups: u64,
     /// Systems solved with the preconditioner.
     pub preconditioner_solves: u64,

@@ -38,7 +38,7 @@ impl<const N: usize> From<[f64; N]> for AbsoluteTolerance {
     }
 }
 
-/// Below this an rtol, 0 or next to it, says nothing about sizes of noise: increments of difference quotients, 1.5e-8 of a size at least,
+/// Smallest rtol that determines sizes of noise: below it, increments of difference quotients, 1.5e-8 of a size at least,
 /// would be more than 150 atol. The usual one is assumed.
 const LEAST_RTOL: f64 = 1e-10;
 const USUAL_RTOL: f64 = 1e-6;
@@ -113,7 +113,7 @@ impl Tolerances {
         self.atol_of(unknown) / rtol
     }
 
-    /// The distance from the state `y` along `direction` at which the first unknown has changed by what it may be off, but at most
+    /// The distance from the state `y` along `direction` at which the first unknown has changed by its tolerance, but at most
     /// `longest`.
     pub(crate) fn error_reach(&self, y: &[f64], direction: &[f64], longest: f64) -> f64 {
         let allowed = |i: usize| match self.rtol * f64::abs(y[i]) + self.atol_of(i) {

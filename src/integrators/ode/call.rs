@@ -1,4 +1,4 @@
-//! How integrators call a system: its outputs are zero on entry.
+//! Calls of a system by integrators: its outputs are zero on entry.
 //!
 //! Outputs are memory of C, or hold results of the last call. All calls of equations go through these
 //! functions, so that a system may add to its output (`tests/house.rs` looks for calls that bypass them).

@@ -1,9 +1,9 @@
-//! Why a callback of a system failed.
+//! Failure of a callback of a system.
 
 use std::error::Error;
 use std::fmt;
 
-/// Why a callback of a system failed.
+/// Failure of a callback of a system.
 ///
 /// Any `std` error converts into [`Failure::Fatal`], so `?` works inside callbacks. For that reason it is not
 /// an [`Error`] itself: it would convert into itself in two ways. Outside of callbacks `?` converts it into
@@ -36,7 +36,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The error by itself, where there is nothing left to retry.
+    /// The error alone, if no retry is possible.
     pub(crate) fn into_error(self) -> Box<dyn Error + Send + Sync> {
         match self {
             Self::Recoverable(message) => message.into(),

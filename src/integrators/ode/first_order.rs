@@ -107,7 +107,7 @@ pub trait Ode {
         self.rhs(t, y, ydot)
     }
 
-    /// How many of the last unknowns are integrals: no right-hand side depends on them. Methods may then
+    /// Number of integrals among the unknowns, the last ones: no right-hand side depends on them. Methods may then
     /// leave them out of their matrix and of the error test. Default: none.
     fn integrals(&self) -> usize {
         0
@@ -164,7 +164,7 @@ pub trait Ode {
     }
 
     /// Writes the values of the mass matrix M(t), column by column, for the sparsity pattern that the
-    /// linear solver was given (`values` is zero on entry): it has room for M and df/dy.
+    /// linear solver was given (`values` is zero on entry): it has entries for M and df/dy.
     fn sparse_mass(&mut self, _t: f64, _values: &mut [f64]) -> Result<(), Failure> {
         Err(missing("sparse_mass"))
     }

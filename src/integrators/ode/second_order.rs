@@ -90,7 +90,7 @@ pub trait SecondOrder {
 /// central differences.
 #[derive(Debug, Clone, Copy)]
 pub struct Kick<'a> {
-    /// How long it lasts.
+    /// Its duration.
     pub duration: f64,
     /// The forces f.
     pub force: &'a [f64],

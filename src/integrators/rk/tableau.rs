@@ -7,7 +7,7 @@
 /// Number of stages; the last one is the first of the next step ("first same as last").
 pub(super) const STAGES: usize = 7;
 
-/// Where in the step each stage is evaluated.
+/// Abscissae c of the stages, as fractions of the step.
 pub(super) const C: [f64; STAGES] = [0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0];
 
 /// Row i holds the weights of the stages before stage i.

@@ -1,4 +1,4 @@
-//! The discrete adjoint of a step: how a number that follows from the end of a step depends on its start, and on the equations.
+//! The discrete adjoint of a step: derivatives of a function of the end of a step by its start, and by the equations.
 //!
 //! It is that of the step as computed, stages and all, and not an integration of the adjoint equations. With lambda the derivative of the
 //! number by the end, and J = df/dy at the start, each stage has a vector
@@ -59,7 +59,7 @@ pub(crate) trait Transposed: Ode {
     fn weights_of(&mut self, z: &[f64], weights: &mut [f64]);
 }
 
-/// A step that was taken back: its stages and their adjoint vectors.
+/// Adjoint of a step: its stages and their adjoint vectors.
 #[derive(Debug)]
 pub(crate) struct StepAdjoint {
     tableau: &'static Tableau,
@@ -74,7 +74,7 @@ pub(crate) struct StepAdjoint {
     vectors: Vec<Vec<f64>>,
     /// The right-hand sides for z_i.
     wanted: Vec<Vec<f64>>,
-    /// Y_i; a state beside the start.
+    /// Y_i; a second state beside the start.
     pulled: Vec<f64>,
     beside: Vec<f64>,
 }
@@ -113,7 +113,7 @@ impl StepAdjoint {
         self.weights.iter().map(move |weights| (gamma, &weights[..]))
     }
 
-    /// The sum of which the derivative is that of the number, of other equations, and another start `t` and size `h` of the step. `has_masses` says whether they have the same L; `weights` has room for two.
+    /// The sum of which the derivative is that of the number, of other equations, and another start `t` and size `h` of the step. `has_masses` says whether they have the same L; `weights` has space for two.
     pub(crate) fn weigh<S: Transposed>(
         &self,
         other: &mut S,

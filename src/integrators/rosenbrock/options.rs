@@ -57,7 +57,7 @@ impl Options {
         self
     }
 
-    /// How the linear systems with the matrix I - gamma h df/dy are solved, and where df/dy comes from: dense
+    /// Solver of the linear systems with the matrix I - gamma h df/dy, and source of df/dy: dense
     /// (the default, with difference quotients), of band form, sparse, or by the system's own `newton_setup`
     /// and `newton_solve`. A Krylov method cannot be used.
     pub fn newton(mut self, solver: LinearSolver) -> Self {

@@ -165,7 +165,7 @@ impl LinearlyImplicit {
         let time = march.clock.time(t);
         let (before, rest) = self.stages.split_at_mut(i);
         let u = &mut rest[0];
-        // what the system leaves out of f in `newton_rhs`, it adds in `newton_solve`
+        // terms of f that the system omits in `newton_rhs` are added in `newton_solve`
         let mut share = 0.0;
         if i == 0 {
             u.copy_from_slice(&march.slope);

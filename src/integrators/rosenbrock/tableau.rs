@@ -18,7 +18,7 @@ pub(super) struct Tableau {
     pub(super) name: &'static str,
     pub(super) order: u32,
     pub(super) gamma: f64,
-    /// Where in the step each stage is evaluated.
+    /// Abscissae of the stages, as fractions of the step.
     pub(super) alpha: &'static [f64],
     /// gamma_i, the weights of df/dt.
     pub(super) gamma_sums: &'static [f64],

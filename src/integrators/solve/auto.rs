@@ -31,7 +31,7 @@ pub(super) struct AutoEngine<'a> {
     options: Options,
     costs: Costs,
     end: f64,
-    /// Where the present method began.
+    /// Start of the present method.
     t: f64,
     y: Vec<f64>,
     /// Steps of the present method.
@@ -394,7 +394,7 @@ impl Engine for AutoEngine<'_> {
         self.past.steps + self.current().map_or(0, Engine::steps)
     }
 
-    /// What limits the steps of one method is a reason for another one.
+    /// A limit of the steps of one method is a reason for another one.
     fn notice(&self) -> Option<String> {
         None
     }

@@ -102,7 +102,7 @@ impl Costs {
     }
 }
 
-/// How many steps BDF takes for one of the Rosenbrock method of order 4: on HIRES, Robertson's, van der Pol's and the pollution problem,
+/// Number of steps of BDF for one of the Rosenbrock method of order 4: on HIRES, Robertson's, van der Pol's and the pollution problem,
 /// the Oregonator and the Brusselator 1.8 to 5.3 at 1e-3, 1.7 to 3.5 at 1e-5, 1.2 to 2.2 at 1e-7, 0.7 to 1.4 at 1e-9, at larger errors.
 fn steps_of_bdf(rtol: f64) -> f64 {
     let decades = (-3.0 - rtol.log10()).max(0.0);

@@ -29,7 +29,7 @@ pub enum Error {
 
 /// A run that stopped: the reason, and the solution until then.
 pub struct Stopped {
-    /// Why.
+    /// The reason.
     pub reason: Reason,
     /// The solution so far.
     pub solution: Solution,
@@ -77,7 +77,7 @@ pub enum Reason {
         event: usize,
         /// Time of the last one.
         t: f64,
-        /// How many there were.
+        /// Their number.
         count: u32,
     },
 }

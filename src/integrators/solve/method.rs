@@ -14,7 +14,7 @@ pub struct MethodUse {
     pub t: f64,
     /// The method.
     pub method: Method,
-    /// Why it is used.
+    /// The reason for its use.
     pub reason: String,
 }
 

@@ -81,7 +81,7 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Where this run stands, with the state of `problem`.
+    /// Present point of this run, with the state of `problem`.
     fn resized(&self, problem: &Problem<'a>) -> Result<Saved, Reason> {
         let parameters = problem.equations.parameters().to_vec();
         let mut saved = self.save();

@@ -92,7 +92,7 @@ pub struct Run<'a> {
     /// The search for events in the last step, one for each.
     pub(super) seen: Vec<Seen>,
     pub(super) occurred: Vec<Occurrence>,
-    /// How many of them the last step has shown.
+    /// Number of those in the last step.
     pub(super) shown: usize,
     pub(super) scratch: Vec<f64>,
     /// Statistics before the last start of the integrator.
@@ -343,13 +343,13 @@ impl<'a> Run<'a> {
         &self.parameters
     }
 
-    /// Why the run has ended; `None` before.
+    /// Reason for the end of the run; `None` before.
     #[must_use]
     pub fn end(&self) -> Option<End> {
         self.end
     }
 
-    /// Where the run stands.
+    /// Present point of the run.
     pub(super) fn snapshot(&self) -> Snapshot {
         let (y, yp, p) = (self.y.clone(), self.yp.clone(), self.parameters.clone());
         Snapshot { t: self.t, y, yp, p, sides: self.signs() }

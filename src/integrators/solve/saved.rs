@@ -18,7 +18,7 @@ pub struct Saved {
     pub yp: Vec<f64>,
     /// Parameters of the equations.
     pub parameters: Vec<f64>,
-    /// How often each event was met.
+    /// Number of occurrences of each event.
     pub counts: Vec<u32>,
     /// Whether each event is armed: none is that occurred [once](super::Event::once), or was
     /// [disarmed](super::Jump::disarm). Empty: all are, except those that occurred once.

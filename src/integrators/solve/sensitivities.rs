@@ -27,7 +27,7 @@ pub(super) struct Carried {
     pub(super) before: Option<[Vec<f64>; 2]>,
 }
 
-/// Where and how a solution jumps.
+/// Time and size of a jump of the solution.
 pub(super) struct Crossing<'c> {
     pub(super) t: f64,
     /// The time in which the state before changes by its size.

@@ -29,7 +29,7 @@ pub(super) struct Surfaces<'a> {
     place: Vec<f64>,
 }
 
-/// How far the equations are continued behind a surface, relative to the time in which the state changes by its
+/// Continuation of the equations behind a surface, relative to the time in which the state changes by its
 /// size, in parts of sqrt(rtol): increments of differences are 1 such part, and the error of the continuation is
 /// its square.
 const REACH: f64 = 5.0;

@@ -26,7 +26,7 @@ pub struct Occurrence {
     pub y: Vec<f64>,
 }
 
-/// Why a run ended.
+/// Reason for the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -115,7 +115,7 @@ fn extremum(k: usize, degree: usize) -> f64 {
     0.5 - 0.5 * (std::f64::consts::PI * k as f64 / degree as f64).cos()
 }
 
-/// How many numbers a step has beyond its start.
+/// Count of numbers of a step beyond its start.
 fn numbers([from, to]: [f64; 2]) -> f64 {
     let latest = from.abs().max(to.abs());
     ((to - from).abs() / (latest.next_up() - latest)).round()
@@ -350,7 +350,7 @@ impl Solution {
         &self.events
     }
 
-    /// Why the run ended.
+    /// Reason for the end of the run.
     #[must_use]
     pub fn end(&self) -> End {
         self.end

@@ -18,7 +18,7 @@ pub(super) struct Root {
     pub(super) noise: f64,
     /// Whether it is of the direction that counts as an event.
     pub(super) counts: bool,
-    /// Where to go on looking, and the value there.
+    /// Start of the further search, and the value there.
     behind: Point,
 }
 
@@ -27,7 +27,7 @@ pub(super) struct Root {
 pub(super) struct Seen {
     /// The next one.
     pub(super) root: Option<Root>,
-    /// Where the function was first found undefined.
+    /// First point at which the function was undefined.
     pub(super) undefined: Option<f64>,
 }
 
@@ -42,7 +42,7 @@ pub(super) struct EventTracker {
     /// The sign that the function should have next, where an action has turned the solution back from zero,
     /// or brought it to rest there.
     turn: Option<Turn>,
-    /// Where an action has let the solution rest at zero, or pass.
+    /// Point at which an action has let the solution rest at zero, or pass.
     held: Option<Held>,
     /// When an action was called last, and the longest time between two calls.
     acted: Option<f64>,

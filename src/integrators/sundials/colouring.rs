@@ -9,7 +9,7 @@ use super::pattern::Pattern;
 pub(crate) struct Colouring {
     /// Columns, colour after colour.
     columns: Vec<usize>,
-    /// Where each colour ends in `columns`.
+    /// End of each colour in `columns`.
     ends: Vec<usize>,
 }
 
@@ -69,7 +69,7 @@ impl Colouring {
         Self { columns, ends }
     }
 
-    /// How many colours there are.
+    /// Number of colours.
     pub(crate) fn count(&self) -> usize {
         self.ends.len()
     }

@@ -85,7 +85,7 @@ mod tests {
     use crate::base::vector::noise;
 
     /// Factors and solutions are those of `SUNLinSol_Dense` to the last bit, with row exchanges, zeros above the diagonal and without; a
-    /// singular matrix is told by both.
+    /// singular matrix is reported by both.
     #[test]
     fn digits_are_those_of_sundials() {
         let context = Context::new().unwrap();

@@ -25,7 +25,7 @@ pub(crate) struct Differences {
     yp: Vec<f64>,
     /// The function there.
     value: Vec<f64>,
-    /// How often the function was evaluated.
+    /// Number of evaluations of the function.
     pub(crate) evaluations: u64,
 }
 

@@ -1,6 +1,6 @@
-//! Direct linear solvers that know whether they have factors.
+//! Direct linear solvers that record whether they have factors.
 //!
-//! When a Jacobian cannot be evaluated, the matrix is left half written, and an integrator that is called
+//! When a Jacobian cannot be evaluated, the matrix remains half written, and an integrator that is called
 //! again continues with it as if it were factorized: with pivots of another matrix, or with pivots that were
 //! never set, and these are indices into memory. So each solver that factorizes is one of this file, which
 //! then requests a new set-up.
@@ -19,7 +19,7 @@ struct Factored {
     has_factors: bool,
 }
 
-/// Who factorizes.
+/// Implementation of the factorization.
 pub(super) enum Direct {
     /// This crate, a dense matrix.
     Dense(DenseFactors),
@@ -27,7 +27,7 @@ pub(super) enum Direct {
     Sundials(ffi::SUNLinearSolver),
 }
 
-/// A linear solver that knows whether there are factors; null if memory runs out.
+/// A linear solver that records whether there are factors; null if memory runs out.
 ///
 /// # Safety
 /// A solver of SUNDIALS is live and direct, and belongs to the result from now on. One of a dense matrix is used with `SUNDenseMatrix`es

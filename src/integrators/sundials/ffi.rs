@@ -1,4 +1,4 @@
-//! The C interface: the bindings of `sundials-sys`, and declarations of what it lacks.
+//! The C interface: the bindings of `sundials-sys`, and declarations that it lacks.
 
 pub use sundials_sys::*;
 

@@ -1,4 +1,4 @@
-//! Which equations each unknown occurs in, by changes of many unknowns at once.
+//! The equations in which each unknown occurs, by changes of many unknowns at once.
 //!
 //! Groups of unknowns with neighbouring numbers are split in halves, again and again. Halves of groups that no equation has in common change
 //! in one evaluation, as it is known from which of the groups each change comes: for equations on a grid that is a few evaluations for each
@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-/// How many groups there are at first.
+/// Initial number of groups.
 const FIRST: usize = 16;
 
 /// Unknowns of neighbouring numbers, and the equations that they occur in.

@@ -40,7 +40,7 @@ pub(super) type NewtonSolve<S> = fn(&mut S, f64, &mut [f64]) -> Result<(), Failu
 /// Finds the index of a `Dae`: (system, t, y, y').
 pub(super) type FindIndex<S> = fn(&mut S, f64, &[f64], &[f64]) -> Result<Index, Failure>;
 
-/// How a user-supplied linear solver is called.
+/// Calls of a user-supplied linear solver.
 pub(super) struct CustomSolve<S> {
     pub(super) solve: NewtonSolve<S>,
     /// Reads the step parameter of the integrator that `memory` belongs to.
@@ -71,7 +71,7 @@ pub(super) struct Host<S> {
     pub(super) checks_answers: bool,
     /// Checks the Jacobian that the system supplies, with its shape if it is a matrix.
     pub(super) check: Option<(JacobianCheck, Option<Shape>)>,
-    /// Finds out whether a DAE failed because of its index; none if the user knows that.
+    /// Check whether a DAE failed because of its index; none if the user has declared the index.
     pub(super) find_index: Option<FindIndex<S>>,
     /// The preconditioner of a Krylov method, if it is not the system's own.
     pub(super) ilu: Option<IncompleteLu>,
@@ -104,7 +104,7 @@ pub(super) struct Troubles {
 /// The error of the user's system, for the integrator's own error.
 pub(super) type ErrorSource = Option<Box<dyn error::Error + Send + Sync>>;
 
-/// Length for which messages of SUNDIALS have room, so that steps do not allocate: limits of steps are among them.
+/// Reserved length of messages of SUNDIALS, so that steps do not allocate: limits of steps are among them.
 const MESSAGE: usize = 256;
 
 /// Most requests for a smaller step at the same time.
@@ -158,7 +158,7 @@ impl Troubles {
         }
     }
 
-    /// Why the integrator stopped at `t` with step `h`: the fatal error or the wrong Jacobian of the user's
+    /// Cause of the stop of the integrator at `t` with step `h`: the fatal error or the wrong Jacobian of the user's
     /// system; else, if `blame_retries`, its last request for a smaller step, at a point that was not passed
     /// since; else `otherwise`.
     pub(super) fn cause(
@@ -179,7 +179,7 @@ impl Troubles {
         }
     }
 
-    /// Whether the user's code has asked to stop.
+    /// Whether the user's code has requested a stop.
     pub(super) fn is_fatal(&self) -> bool {
         self.fatal.is_some()
     }
@@ -421,7 +421,7 @@ impl<S> HostBox<S> {
         self.0.as_ptr().cast()
     }
 
-    /// Where vectors of signs note an unknown beyond its bound, during calls of C.
+    /// Record of an unknown beyond its bound by vectors of signs, during calls of C.
     pub(super) fn violation(&self) -> *mut Option<Violation> {
         // SAFETY: the host lives as long as `self`; no reference is made.
         unsafe { &raw mut (*self.0.as_ptr()).troubles.violation }

@@ -1,4 +1,4 @@
-//! The index of a DAE: whether its equations determine all unknowns without being differentiated.
+//! The index of a DAE: a check that its equations determine all unknowns without differentiation.
 
 use crate::integrators::ode::{Dae, Failure, call};
 

@@ -4,7 +4,7 @@ use std::{ffi::c_void, ptr};
 
 use super::ffi;
 
-/// Where `CVodeGetIntegratorStats` writes.
+/// Output of `CVodeGetIntegratorStats`.
 struct Places {
     steps: *mut i64,
     evaluations: *mut i64,

@@ -1,6 +1,6 @@
-//! Where a Jacobian comes from.
+//! Sources of a Jacobian.
 
-/// Where the entries of a Jacobian, or its products with vectors, come from.
+/// Source of the entries of a Jacobian, or of its products with vectors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Jacobian {
@@ -9,7 +9,7 @@ pub enum Jacobian {
     /// those that share no row have the same colour and are shifted at once. A product takes one.
     ///
     /// For a right-hand side, the shifts depend on the size of each unknown (its value, plus atol / rtol,
-    /// below which it is noise) and on what the last shift changed; if that was lost in rounding, one more
+    /// below which it is noise) and on the effect of the last shift; if that was below round-off, one more
     /// evaluation with a larger shift is made.
     DifferenceQuotients,
     /// The system's own `dense_jacobian`, `banded_jacobian`, `sparse_jacobian` or `jacobian_times`.

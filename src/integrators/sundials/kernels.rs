@@ -1,7 +1,7 @@
 //! Faster versions of the vector operations in which integrators of small and middle-sized systems
 //! spend most of their own time.
 //!
-//! The serial vector of SUNDIALS goes through its numbers one at a time; the loops below are
+//! The serial vector of SUNDIALS processes its numbers one at a time; the loops below are
 //! written so that the compiler turns them into vector instructions. Vectors that SUNDIALS clones
 //! inherit the operations.
 

@@ -43,7 +43,7 @@ pub enum KrylovMethod {
     Gmres {
         /// Dimensions of the subspace, 1 to 1000; the default of C is 5.
         dimension: u32,
-        /// How often it may restart from the point it has reached, at most 1000; 0: not at all.
+        /// Largest number of restarts from the reached point, at most 1000; 0: none.
         restarts: u32,
     },
     /// The stabilized method of biconjugate gradients (`SUNLinSol_SPBCGS`): two products for each iteration,
@@ -57,7 +57,7 @@ pub enum KrylovMethod {
     Fgmres {
         /// Dimensions of the subspace, 1 to 1000; the default of C is 5.
         dimension: u32,
-        /// How often it may restart from the point it has reached, at most 1000; 0: not at all.
+        /// Largest number of restarts from the reached point, at most 1000; 0: none.
         restarts: u32,
     },
     /// The quasi-minimal residual method without products with the transposed matrix (`SUNLinSol_SPTFQMR`): two
@@ -100,7 +100,7 @@ pub enum Preconditioner {
     Ilu {
         /// The entries that are used; the Jacobian may have others if its values are supplied.
         pattern: Pattern,
-        /// Where the values come from.
+        /// Source of the values.
         jacobian: Jacobian,
     },
 }
@@ -112,7 +112,7 @@ impl Krylov {
         Self { method, products, preconditioner: None, tolerance_factor: None }
     }
 
-    /// Where the products of the Jacobian with vectors come from (`CVodeSetJacTimes`). Default: difference
+    /// Source of the products of the Jacobian with vectors (`CVodeSetJacTimes`). Default: difference
     /// quotients; supplied ones are `jacobian_times`.
     pub fn products(mut self, products: Jacobian) -> Self {
         self.products = products;

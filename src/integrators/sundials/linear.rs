@@ -198,7 +198,7 @@ type KrylovSolve = unsafe extern "C" fn(
     f64,
 ) -> i32;
 
-/// The `solve` operations of Krylov methods, with codes that all integrators know.
+/// The `solve` operations of Krylov methods, with codes that all integrators understand.
 macro_rules! solve_operations {
     ($($name:ident: $solve:ident;)+) => {$(
         unsafe extern "C" fn $name(

@@ -1,4 +1,4 @@
-//! How the linear systems of the Newton iteration are solved.
+//! Linear solvers of the Newton iteration.
 
 use faer::MatMut;
 
@@ -6,7 +6,7 @@ use super::{jacobian::Jacobian, krylov::Krylov, pattern::Pattern};
 use crate::base::input::InputError;
 use crate::integrators::ode::{BandMut, Entries, Storage};
 
-/// How the linear systems of the Newton iteration are solved.
+/// Linear solver of the Newton iteration.
 ///
 /// User guide: chapter "Linear Algebraic Solvers", SUNLinearSolver.
 #[derive(Clone, Debug)]
@@ -22,15 +22,15 @@ pub enum LinearSolver {
         lower: usize,
         /// Diagonals above the main one.
         upper: usize,
-        /// Where the entries come from.
+        /// Source of the entries.
         jacobian: Jacobian,
     },
     /// Sparse LU factorization by KLU.
     Klu {
-        /// Where the nonzeros are. Difference quotients are wrong where the Jacobian has others, which is checked
+        /// Pattern of the nonzeros. Difference quotients are wrong where the Jacobian has others, which is checked
         /// ([`CvodeOptions::check_jacobian`](super::CvodeOptions::check_jacobian)).
         pattern: Pattern,
-        /// Where the entries come from.
+        /// Source of the entries.
         jacobian: Jacobian,
     },
     /// A Krylov method: no matrix, but products with vectors.
@@ -138,7 +138,7 @@ impl LinearSolver {
             || matches!(self, Self::Band { jacobian, .. } | Self::Klu { jacobian, .. } if *jacobian == quotients)
     }
 
-    /// Where entries, of the matrix or of its preconditioner, come from.
+    /// Source of the entries of the matrix or of its preconditioner.
     fn source_of_entries(&self) -> Option<Jacobian> {
         match self {
             Self::Dense(jacobian) | Self::Band { jacobian, .. } | Self::Klu { jacobian, .. } => {

@@ -1,9 +1,9 @@
 //! A safe, general layer over SUNDIALS, for any system of ordinary differential equations (CVODE) or
-//! differential-algebraic equations (IDA). It knows nothing about bodies.
+//! differential-algebraic equations (IDA). It is independent of bodies.
 //!
 //! The system is a closure or a struct, see [`crate::integrators::ode`]; the solver owns it, chooses its
 //! steps by the tolerances, and reports failures by a typed [`Error`] that names time, step size, order,
-//! cause and what to try. Panics of the system pass through C safely.
+//! cause and remedy. Panics of the system pass through C safely.
 //!
 //! ```
 //! use pliant::sundials::{Cvode, CvodeOptions, Integrator};
@@ -25,7 +25,7 @@
 //! [`Cvode`], [`Arkode`] and [`Ida`] are used through the methods of [`Integrator`]:
 //! [`solve_to`](Integrator::solve_to) a time or a single [`step`](Integrator::step), output between the steps
 //! by [`interpolate`](Integrator::interpolate), stop times, root functions, new starts and [`Statistics`].
-//! [`LinearSolver`] chooses how Newton's linear systems are solved: dense, band, sparse (KLU), without a
+//! [`LinearSolver`] selects the solver of Newton's linear systems: dense, band, sparse (KLU), without a
 //! matrix ([`Krylov`]) or by the system itself. The SUNDIALS user guide describes the C functions behind the
 //! methods.
 //!

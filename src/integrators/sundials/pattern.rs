@@ -1,4 +1,4 @@
-//! Where the nonzeros of a sparse Jacobian are.
+//! Pattern of the nonzeros of a sparse Jacobian.
 
 use std::ops::Range;
 

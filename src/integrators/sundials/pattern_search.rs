@@ -9,15 +9,15 @@ use crate::integrators::{
     ode::{Dae, Failure, Ode, call},
 };
 
-/// Where the nonzeros of a Jacobian are, found by evaluating the equations. Both methods see only the
-/// branches that are taken in these evaluations: where the equations switch, give points on both sides, or
+/// Search for the nonzeros of a Jacobian by evaluation of the equations. Both methods detect only the
+/// branches that are active in these evaluations: where the equations switch, give points on both sides, or
 /// write the pattern down.
 impl Pattern {
     /// The pattern of df/dy: component i of f depends on y_j if it becomes NaN when y_j is NaN.
     ///
     /// It takes n + 17 evaluations at most, some hundred where most unknowns with neighbouring numbers share few equations (a grid row by
     /// row, say), at any y where f has values: terms that are zero there count, too.
-    /// Operations that do not pass NaN on hide what they depend on, and these entries are missing:
+    /// Operations that do not propagate NaN hide their dependencies, and these entries are missing:
     /// `f64::max`, `f64::min`, `clamp` on the bounds, comparisons (`if y[0] > 1.0`), conversions to integers.
     /// [`ode_by_sampling`](Self::ode_by_sampling) is not affected by them.
     ///

@@ -1,9 +1,9 @@
-//! Whether the steps of an integrator make progress in time.
+//! Detection of steps without progress in time.
 
 /// After how many steps this is checked.
 pub(super) const STRETCH: u64 = 100;
 
-/// Where a run was some steps ago.
+/// Time of a run some steps ago.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Progress {
     steps: u64,
@@ -15,7 +15,7 @@ pub(super) struct Progress {
 impl Progress {
     /// Notes that `steps` steps have led to time `t`, from the start.
     ///
-    /// Time stands still if the steps of a stretch were, on average, no longer than a few times the rounding
+    /// There is no progress if the steps of a stretch were, on average, no longer than a few times the round-off
     /// error of the time.
     pub(super) fn note(&mut self, steps: u64, t: f64) {
         self.stands = false;

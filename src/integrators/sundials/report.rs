@@ -1,4 +1,4 @@
-//! Statistics of an integrator of SUNDIALS, and why it stopped.
+//! Statistics of an integrator of SUNDIALS, and the cause of its stop.
 
 use super::{
     ffi,
@@ -199,7 +199,7 @@ impl<K, S> Session<K, S> {
     }
 }
 
-/// Why an integrator that may take so many steps to `target` stops with this code, and whether a request of
+/// Cause for which an integrator that may take so many steps to `target` stops with this code, and whether a request of
 /// the system for a smaller step can be the reason.
 pub(super) fn cause_of(code: i32, max_steps: u32, target: f64) -> (Cause, bool) {
     match code {

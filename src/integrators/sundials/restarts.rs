@@ -1,4 +1,4 @@
-//! New starts of C: after a first step or an explicit stage that failed, from the present state; and what C has then.
+//! Restarts of C: after a first step or an explicit stage that failed, from the present state; and the state of C then.
 
 use super::{
     ffi,
@@ -48,7 +48,7 @@ impl<K, S> Session<K, S> {
         Ok(true)
     }
 
-    /// After an explicit stage of ARKODE without a right-hand side: lets C go on from the end of the last step with a smaller one, up to the time
+    /// After an explicit stage of ARKODE without a right-hand side: C continues from the end of the last step with a smaller one, up to the time
     /// `stop`, with its counts as they are, if that may help. C has no retry there.
     pub(super) fn shortens_explicit_step(
         &mut self,

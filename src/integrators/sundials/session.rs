@@ -1,4 +1,4 @@
-//! A session of an integrator of SUNDIALS and everything it uses: how it is put together.
+//! A session of an integrator of SUNDIALS with all its parts: construction.
 //!
 //! CVODE, ARKODE and IDA are one struct over a table of C functions. A solver as users see it owns the system
 //! and lends it to the session as `dyn Ode` or `dyn Dae`: all code that touches C is compiled once, in the
@@ -35,7 +35,7 @@ use crate::integrators::{
     ode::Ode,
 };
 
-/// How often a step may be tried again with a smaller size because its error is too large. The 7 of CVODE and
+/// Largest number of repetitions of a step with a smaller size because its error is too large. The 7 of CVODE and
 /// ARKODE end runs at jumps that follow a long smooth stretch (the Oregonator); 20 are enough to get from any
 /// step to the smallest possible. IDA keeps its 10: it passes such jumps, and more would hide that equations
 /// are of higher index.
@@ -106,7 +106,7 @@ impl Drop for Memory {
     }
 }
 
-/// Where an integration starts.
+/// Start of an integration.
 pub(super) struct InitialState<'a> {
     pub(super) t: f64,
     pub(super) y: &'a [f64],

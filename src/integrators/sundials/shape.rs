@@ -1,4 +1,4 @@
-//! Which entries of a matrix are stored, and in which order.
+//! Stored entries of a matrix, and their order.
 
 use std::ops::Range;
 
@@ -34,7 +34,7 @@ impl Shape {
         }
     }
 
-    /// How many numbers a matrix with `n` columns stores, without space for pivots.
+    /// Count of numbers that a matrix with `n` columns stores, without space for pivots.
     pub(crate) fn stored(&self, n: usize) -> usize {
         match self {
             Self::Dense => n * n,

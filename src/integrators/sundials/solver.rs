@@ -1,4 +1,4 @@
-//! An integrator of SUNDIALS as users see it: a session, and the system that is lent to it.
+//! The public interface of an integrator of SUNDIALS: a session, and the system that is lent to it.
 
 use std::{fmt, marker::PhantomData, mem, ptr, ptr::NonNull};
 

@@ -1,4 +1,4 @@
-//! How the step size may change from one step to the next.
+//! Bounds on the change of the step size from one step to the next.
 
 use crate::base::input::InputError;
 

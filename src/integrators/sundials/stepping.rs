@@ -1,4 +1,4 @@
-//! How a session integrates: steps, interpolation, stop times and new starts.
+//! Integration by a session: steps, interpolation, stop times and restarts.
 
 use std::{ffi::c_void, mem, ptr};
 

@@ -1,5 +1,5 @@
-//! The phase in force, as commands have changed it: numbers and names as they are, and functions by their
-//! place in the scene.
+//! The current phase, as commands have changed it: numbers and names as values, and functions by their
+//! index in the scene.
 
 use std::collections::BTreeMap;
 use std::mem::take;
@@ -95,7 +95,7 @@ enum Stored<T> {
 
 /// Values that may be given by a function.
 trait Changing: Clone {
-    /// Where the function is, and its breaks, if it is one.
+    /// Index of the function, and its breaks, if it is one.
     fn function(&self) -> Option<(*const (), &[f64])>;
 }
 
@@ -153,7 +153,7 @@ impl<T: Changing> Stored<T> {
         match self {
             Self::Itself(value) => Ok(value),
             Self::SceneFunction(place) => own.nth(place).cloned().ok_or_else(|| {
-                format!("{what} {place} is none of the phase in the scene: write it anew")
+                format!("the phase in the scene has no {what} {place}: recreate the checkpoint")
             }),
         }
     }
@@ -245,7 +245,7 @@ impl PhaseOverrides {
         })
     }
 
-    /// The phase in force; `own` is what the scene has.
+    /// The current phase; `own` is that of the scene.
     ///
     /// # Errors
     /// Functions that do not exist. All else is [checked](Phase) by the scene.

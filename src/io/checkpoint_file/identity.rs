@@ -63,7 +63,7 @@ impl Identity {
             parts.map(|(name, hash)| (name.into(), text(hash))).into();
         let tied = scene.tied().unwrap_or_default();
         let lags: Vec<_> = scene.lags().collect();
-        // a scene without them is what it was before there were any
+        // a scene without them keeps its identity from before they existed
         let others = [
             ("state at the start", scene.starting_state().map(of_text)),
             ("gas", scene.has_gas().then(|| of_text(&scene.gas_parts()))),

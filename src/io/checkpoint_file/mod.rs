@@ -1,10 +1,10 @@
 //! Checkpoints in files: written by one process, read by another, for a simulation of the same scene.
 //!
-//! A file has data that identify the scene and not the scene: numbers of nodes and cells, and a hash
-//! (SipHash, the same with every version of Rust) of each part, so that a refusal names the part. Of the
-//! phase in force it has all numbers and names; functions of time, which no file can hold, are stored as
-//! their place in the scene's own phase. Constraints keep where and when they started, so that held nodes go
-//! on at the same place bit by bit.
+//! A file identifies the scene without containing it: numbers of nodes and cells, and a hash
+//! (SipHash, the same with every version of Rust) of each part, so that an error names the part. Of the
+//! current phase it has all numbers and names; functions of time, which no file can hold, are stored as
+//! their index in the scene's own phase. Constraints store position and time of their start, so that held nodes
+//! continue at the same position to the last bit.
 
 mod commands;
 mod identity;
@@ -76,7 +76,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`Error::Read`] if there is no file that can be read; a file that is no checkpoint, of a format that
-    /// this version cannot read, damaged, or of another scene: the message names what differs.
+    /// this version cannot read, damaged, or of another scene: the message names the difference.
     pub fn read_checkpoint(&self, path: impl AsRef<Path>) -> Result<Checkpoint, Error> {
         let path = path.as_ref();
         let refuse = |help| InputError::new("checkpoint file", path.display(), help).into();
@@ -86,25 +86,25 @@ impl Simulation {
     }
 }
 
-/// The most bytes that a file may have, of a body with `dofs` displacement components: ten times what the
-/// state takes, and room for commands.
+/// The largest size (bytes) of a file of a body with `dofs` displacement components: ten times what the
+/// state takes, and some more for commands.
 fn most_bytes(dofs: usize) -> u64 {
     (1 << 24) + 512 * dofs as u64
 }
 
-/// The contents of a file of `most` bytes at most, or what is wrong with it.
+/// The contents of a file of `most` bytes at most, or its defect.
 fn open(path: &Path, most: u64) -> std::io::Result<Result<Vec<u8>, String>> {
     // opening a pipe may block for ever
     if !fs::metadata(path)?.is_file() {
         return Ok(Err("it is no regular file: name one".into()));
     }
-    let help = "it is no checkpoint of this scene, or was damaged: write it anew";
+    let help = "it is no checkpoint of this scene, or was damaged: recreate it";
     let too_long = || format!("it has more than {most} bytes: {help}");
     Ok(read_if_at_most(path, most)?.ok_or_else(too_long))
 }
 
 fn parse(text: &[u8], simulation: &Simulation) -> Result<Checkpoint, String> {
-    let damaged = |error| format!("it is damaged or cut off ({error}): write it anew");
+    let damaged = |error| format!("it is damaged or cut off ({error}): recreate it");
     let head: Head = serde_json::from_slice(text).map_err(|error| match error.is_data() {
         true => format!("it does not say \"{WHAT}\": name a file of `Checkpoint::write`"),
         false => damaged(error),

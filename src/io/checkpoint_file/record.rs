@@ -53,7 +53,7 @@ pub(super) struct Record {
     energies_noted: [f64; 3],
     dissipated: f64,
     supplied: f64,
-    /// Where each constraint starts: displacement and time.
+    /// Start of each constraint: displacement and time.
     constraint_starts: Vec<[f64; 4]>,
     displacements: Vec<f64>,
     velocities: Vec<f64>,
@@ -135,30 +135,35 @@ impl Record {
         ] {
             if numbers.len() != needed {
                 let found = numbers.len();
-                return Err(format!("it has {found} {what}, the body has {needed}: write it anew"));
+                return Err(format!(
+                    "it has {found} {what}, the body has {needed}: recreate the checkpoint"
+                ));
             }
         }
         let phases = scene.phases();
         let Some(phase) = phases.get(self.phase) else {
             let (number, count) = (self.phase, phases.len());
-            return Err(format!("phase {number} is none of 0 to {}: write it anew", count - 1));
+            return Err(format!(
+                "phase {number} is outside 0 to {}: recreate the checkpoint",
+                count - 1
+            ));
         };
         let begin = self.phase.checked_sub(1).map_or(0.0, |before| phases[before].until);
         if !(begin..=phase.until).contains(&self.time) {
             let (name, until, time) = (&phase.name, phase.until, self.time);
             return Err(format!(
-                "time {time} s is not in phase \"{name}\", from {begin} s to {until} s: write it anew"
+                "time {time} s is not in phase \"{name}\", from {begin} s to {until} s: recreate the checkpoint"
             ));
         }
         if let Some(step) = self.next_step.filter(|step| *step <= 0.0) {
-            return Err(format!("next_step {step} s is not above 0: write it anew"));
+            return Err(format!("next_step {step} s is not above 0: recreate the checkpoint"));
         }
         let patience = self.chosen.as_ref().map_or(0, |chosen| chosen.patience);
         for (what, count) in
             [("steps", self.steps), ("load_commands", self.load_commands), ("patience", patience)]
         {
             if count as u64 > MOST {
-                return Err(format!("{what} {count} is above {MOST}: write it anew"));
+                return Err(format!("{what} {count} is above {MOST}: recreate the checkpoint"));
             }
         }
         let energies = vec![self.dissipated, self.supplied];

@@ -137,7 +137,7 @@ fn spread(mesh: &Mesh, all: &[&[usize]], among: &BTreeSet<usize>) -> (Vec<usize>
                 off += ((at - own - 0.5) * (high - low) / count).powi(2);
             }
             let nearest = boxes.entry(place).or_insert((off, cell));
-            // of cells as near as each other the first, whatever round-off makes of it
+            // of equally near cells the first, independent of round-off
             if off < 0.999 * nearest.0 {
                 *nearest = (off, cell);
             }

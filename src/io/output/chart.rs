@@ -79,7 +79,7 @@ impl Chart {
         self.with(name, Series { mark: Some(Mark::DOT), ..Series::line(colour, points) })
     }
 
-    /// As [`series`](Self::series), dashed and grey: what is expected, to compare with.
+    /// As [`series`](Self::series), dashed and grey: expected values, for comparison.
     pub fn reference(
         self,
         name: impl Into<String>,

@@ -26,7 +26,7 @@ pub(super) struct ColumnKind {
     pub(super) meaning: &'static str,
 }
 
-/// How many columns there are of a kind.
+/// Number of columns of a kind.
 #[derive(Clone, Copy)]
 pub(super) enum Along {
     /// One.

@@ -108,7 +108,7 @@ impl GrowingTable {
     }
 
     /// Adds the samples that are not yet in it. Where the run has gone back and dropped some, all its rows
-    /// are written anew.
+    /// are rewritten.
     ///
     /// # Errors
     /// [`Error::Output`] if the file cannot be written.

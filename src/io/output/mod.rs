@@ -4,7 +4,7 @@
 //! | --- | --- | --- |
 //! | CSV | tables of centre of mass, momentum, energies, tracked nodes, sensors, reactions | [`write_csv`] |
 //! | CSV | tables of all energies and their balance | [`write_energies`] |
-//! | JSON | how a result was obtained: method, steps, errors, versions | [`write_report`] |
+//! | JSON | report of a result: method, steps, errors, versions | [`write_report`] |
 //! | SVG | the deformed body at chosen times, panel by panel | [`Snapshots`] |
 //! | SVG, PNG | sensors and energies over time, of a motion or of a table that a run has left | [`Plot`] |
 //! | SVG, PNG | any series over each other | [`Chart`] |

@@ -12,7 +12,7 @@ pub(crate) enum Role {
 }
 
 impl Scene {
-    /// The nodes that a phase constrains, with what it makes them do.
+    /// The nodes that a phase constrains, with their constraint.
     pub(crate) fn constrained_nodes(
         &self,
         phase: &Phase,

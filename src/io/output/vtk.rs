@@ -190,7 +190,7 @@ fn array<const N: usize>(
     numbers: impl Iterator<Item = (f64, [u8; N])>,
 ) -> String {
     let mut bytes = Vec::new();
-    // a range leaves out what is not a number, such as strains of rigid cells
+    // a range excludes NaN, such as strains of rigid cells
     let (mut least, mut greatest) = (f64::NAN, f64::NAN);
     for (number, its_bytes) in numbers {
         least = least.min(number);

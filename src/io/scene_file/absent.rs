@@ -1,6 +1,6 @@
-//! Tables that scene files do not have, and what to use instead.
+//! Tables that scene files do not have, and their alternatives.
 
-/// By the names that users may try: what does not exist, and what to use instead, in words.
+/// By the names that users may try: the missing feature, and its alternative, in words.
 const ABSENT: [(&[&str], &str); 8] = [
     (
         &["bodies"],

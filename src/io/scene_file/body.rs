@@ -278,7 +278,7 @@ fn add_regions(
     mesh: &Mesh,
     base: &Substance,
 ) -> Result<BodyBuilder, Error> {
-    // what the cells are made of so far, and which of these each has
+    // the materials of the cells so far, and the index of that of each
     let mut substances = vec![base.clone()];
     let mut of_cell = vec![0; mesh.cell_count()];
     for table in regions.tables(&REGION)? {

@@ -18,15 +18,15 @@ pub struct SceneFile {
     pub title: String,
     /// The scene, by the smaller models of it by which it is run.
     pub scene: Scene,
-    /// How it is smaller than what the tables say: `half`, `plane` and `rod` of `[solver]`.
+    /// Its simplification relative to the tables: `half`, `plane` and `rod` of `[solver]`.
     pub smaller: Vec<Smaller>,
-    /// How it is integrated.
+    /// Its settings.
     pub settings: Settings,
-    /// How accurate its motion has to be.
+    /// Required accuracy of its motion.
     pub accuracy: AccuracyRequest,
     /// Choices left open for each body.
     pub auto: Vec<AutoRequest>,
-    /// How its equilibrium is sought.
+    /// Options of its equilibrium.
     pub statics: StaticsRequest,
     /// Requested output.
     pub output: OutputRequest,
@@ -34,7 +34,7 @@ pub struct SceneFile {
     pub notes: Vec<String>,
 }
 
-/// How accurate a motion has to be, if that was requested: see `studies::work_precision::Verification`.
+/// Required accuracy of a motion, if there is one: see `studies::work_precision::Verification`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct AccuracyRequest {
     /// The largest relative difference of two runs that is allowed.
@@ -57,12 +57,12 @@ pub struct AutoRequest {
 pub struct StaticsRequest {
     /// Name of the phase; the first one without it.
     pub phase: Option<String>,
-    /// How it is sought.
+    /// Options of the search.
     pub options: Statics,
 }
 
 impl SceneFile {
-    /// The equilibrium that the file describes, with what its sensors read.
+    /// The equilibrium that the file describes, with the readings of its sensors.
     ///
     /// # Errors
     /// As [`Scene::equilibrium_of`] and [`Equilibrium::read`].
@@ -100,7 +100,7 @@ pub struct OutputRequest {
     pub times: Option<Vec<f64>>,
     /// Nodes whose displacements the table lists.
     pub track: Option<Selection>,
-    /// Sensors: their names, and what they read.
+    /// Sensors: their names and readings.
     pub sensors: Vec<(String, Reading)>,
     /// Kinds of files. Default: CSV.
     pub formats: Vec<Format>,
@@ -154,7 +154,7 @@ impl Default for OutputRequest {
 }
 
 impl OutputRequest {
-    /// When the motion is sampled, and what is read then.
+    /// Times of the samples of the motion, and the readings at them.
     pub fn sampling(&self) -> Sampling {
         let times = match (&self.times, self.step) {
             (Some(times), _) => Sampling::at(&**times),

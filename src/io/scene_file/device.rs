@@ -40,7 +40,7 @@ impl DeviceTable {
         Self { word, about: "A device of this program.", keys: &[], read }
     }
 
-    /// With words for reference and schema: what it is, a sentence in Markdown, and its keys, all of them.
+    /// With words for reference and schema: its description, a sentence in Markdown, and all its keys.
     #[must_use]
     pub fn described(self, about: &'static str, keys: &'static [DeviceKey]) -> Self {
         Self { about, keys, ..self }

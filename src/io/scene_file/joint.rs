@@ -186,7 +186,7 @@ pub(super) fn add_joint(scene: Scene, value: &Value) -> Result<Scene, Error> {
     Ok(scene.joint(joint))
 }
 
-/// The phase with what the motor of a joint does.
+/// The phase with the motor of a joint.
 pub(super) fn motor(mut phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let joints = scene.devices().iter().filter(|device| device.kind() == "joint");
     let known: Vec<&str> = joints.clone().map(|device| device.name()).collect();

@@ -1,4 +1,4 @@
-//! The values of a scene file one by one, by their keys: what identifies a run among others of the same bodies.
+//! The values of a scene file one by one, by their keys, which identify a run among others of the same bodies.
 
 use std::collections::BTreeMap;
 

@@ -175,7 +175,7 @@ pub(super) fn substance(value: &Value, base: Option<&Substance>) -> Result<Subst
     let is_rigid = table.optional("rigid", Value::flag)?;
     let is_rigid = is_rigid.unwrap_or(base.is_some_and(|base| base.is_rigid));
     let of_body = base.map(|base| base.material.density);
-    // a rigid piece takes nothing over from what is not rigid but its density, nor the other way round
+    // a rigid piece inherits only the density of a deformable material, and vice versa
     let stiff = is_rigid.then(|| Material::rigid(f64::NAN));
     let base = match base {
         Some(base) if base.is_rigid == is_rigid => Some(base),

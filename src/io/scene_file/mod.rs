@@ -1,4 +1,4 @@
-//! Scene files: a scene, how it is integrated and what is written, in TOML. SI units; the words are
+//! Scene files: a scene, its settings and its output, in TOML. SI units; the words are
 //! those of the API.
 //!
 //! ```
@@ -32,7 +32,7 @@
 //! # Ok::<(), pliant::Error>(())
 //! ```
 //!
-//! All tables and keys, and what else `pliant` reads and writes:
+//! All tables and keys, and all other files of `pliant`:
 //!
 #![doc = include_str!("../../../docs/reference.md")]
 

@@ -62,7 +62,7 @@ pub(super) fn as_toml(text: &str) -> Result<String, Error> {
 }
 
 /// Puts the values of `over` in the places of those in `table`. In a list of tables a key is the name of one,
-/// or its number (from 1). A single table counts as a list of one where a key says so, and the number of the only table in a list
+/// or its number (from 1). A single table counts as a list of one if the key requires a list, and the number of the only table in a list
 /// may be left out.
 pub(super) fn merge<'a>(
     table: &mut DeTable<'a>,

@@ -25,7 +25,7 @@ use crate::scene::timeline::{Input, Phase, Quantity, Row, Scene, Target};
 /// Adds a table inside of a phase.
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
-/// The tables inside of a phase: what they add.
+/// The additions of the tables inside a phase.
 const PARTS: [(&TableKeys, Add); 17] = [
     (&HOLD, hold),
     (&MOVE, moving),

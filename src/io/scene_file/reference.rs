@@ -37,7 +37,7 @@ fn sections(head: &str, tables: &[&'static TableKeys]) -> String {
     page
 }
 
-/// The laws of materials: the word of each, what it is for, and its constants with their units.
+/// The laws of materials: the word of each, its purpose, and its constants with their units.
 pub fn laws() -> impl Iterator<Item = (&'static str, &'static str, Vec<String>)> {
     LAW.kinds.iter().map(|kind| {
         let constant =

@@ -1,5 +1,5 @@
 //! Writes changed ends of phases, pressures, forces of actuators, loads, magnetic fields and inputs of devices into the text of a scene file; all
-//! else stays as it was written.
+//! else remains unchanged.
 
 use std::collections::BTreeSet;
 use std::ops::Range;

@@ -246,7 +246,7 @@ const BODY: Key =
     Key::new("body", ValueType::Text, "the name of one of several bodies").default("all together");
 const LINE: ValueType = ValueType::Array(&ValueType::Nodes, 2);
 
-/// A sensor's name, and what it reads in `scene`.
+/// A sensor's name, and its reading in `scene`.
 pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), Error> {
     let table = value.table(&SENSOR)?;
     let name = table.required("name", Value::string)?;
@@ -336,7 +336,7 @@ fn spot(table: &Table, mesh: &Mesh) -> Result<Spot, Error> {
     }
 }
 
-/// How the nodes or the body of the table turn.
+/// Rotation of the nodes or of the body of the table.
 fn turning(table: &Table, mesh: &Mesh, reading: Reading) -> Result<Reading, Error> {
     of_nodes(table, mesh, of_body(table, reading)?)
 }

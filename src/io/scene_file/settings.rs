@@ -133,7 +133,7 @@ pub(super) fn solver(value: &Value) -> Result<Settings, Error> {
     Ok(settings)
 }
 
-/// How accurate the motion has to be, and in what.
+/// Required accuracy of the motion, and its quantity.
 pub(super) fn accuracy(value: &Value) -> Result<AccuracyRequest, Error> {
     let table = value.table(&SOLVER)?;
     let within = table.optional("accuracy", Value::fraction)?;

@@ -46,7 +46,7 @@ pub(super) const ROD: Key = Key::new(
 const AXES: [(&str, Option<Axis>); 4] =
     [("x", Some(Axis::X)), ("y", Some(Axis::Y)), ("z", Some(Axis::Z)), ("", None)];
 
-/// The scene by the smaller models that the table `solver` names, with what is written of it.
+/// The scene by the smaller models that the table `solver` names, with its output.
 pub(super) fn smaller(
     mut scene: Scene,
     mut output: OutputRequest,

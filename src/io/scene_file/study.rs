@@ -1,4 +1,4 @@
-//! Study files: which keys of a scene are varied, how, and what is kept of each run.
+//! Study files: the varied keys of a scene, their values, and the stored results of each run.
 
 use std::cell::RefCell;
 use std::fmt::Display;
@@ -17,7 +17,7 @@ use crate::dynamics::error::Error;
 /// Contents of a study file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StudyFile {
-    /// Where it was read; empty for a study that a program has made.
+    /// Path of its file; empty for a study that a program has made.
     pub path: PathBuf,
     /// Title; empty without one.
     pub title: String,
@@ -29,13 +29,13 @@ pub struct StudyFile {
     pub quantities: Vec<Written>,
     /// Whether each point is an equilibrium, and not a run.
     pub is_static: bool,
-    /// How accurate each run has to be.
+    /// Required accuracy of each run.
     pub accuracy: Option<Fraction>,
     /// A table (CSV) each row of which is a point.
     pub table: Option<Written>,
     /// The keys that are varied.
     pub keys: Vec<VariedKey>,
-    /// How ranges without steps are filled.
+    /// Filling of ranges without steps.
     pub sample: Option<SampleRequest>,
 }
 
@@ -66,7 +66,7 @@ pub enum Varied {
     Range {
         /// Its least and its largest value.
         ends: [f64; 2],
-        /// How many values it is divided into.
+        /// Number of its values.
         spacing: Spacing,
         /// Whether steps are ratios.
         is_logarithmic: bool,
@@ -75,7 +75,7 @@ pub enum Varied {
     },
 }
 
-/// How many values a range has.
+/// Number of values of a range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Spacing {
     /// So many, with both ends.
@@ -86,12 +86,12 @@ pub enum Spacing {
     Sampled,
 }
 
-/// How ranges without steps are filled.
+/// Filling of ranges without steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SampleRequest {
     /// Which points.
     pub method: SampleMethod,
-    /// How many.
+    /// Their number.
     pub count: usize,
     /// The seed of a Latin hypercube; how many points of Sobol's sequence are left out at its beginning.
     pub seed: u64,

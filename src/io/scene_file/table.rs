@@ -1,9 +1,9 @@
-//! Tables of a scene file, and which of their keys an error is about.
+//! Tables of a scene file, and the keys of errors.
 //!
 //! Each table is read straight into the builder that it describes, so words, defaults and checks are those of
-//! the API. Parsing keeps the place of every key (`toml::de::DeTable`; a serde derive would lose it inside
+//! the API. Parsing keeps the position of every key (`toml::de::DeTable`; a serde derive would lose it inside
 //! tables whose keys depend on `kind`, and knows no units). Overrides are parsed as if they followed the text
-//! of the file and merged into its tables, so that their errors have a place, too. After each table the scene
+//! of the file and merged into its tables, so that their errors have a position, too. After each table the scene
 //! so far is validated, and an error is put on the line of the key that it names.
 
 use std::fmt::Display;
@@ -19,7 +19,7 @@ use super::value::Value;
 use crate::base::input::{InputError, list, unknown};
 use crate::dynamics::error::Error;
 
-/// The key that says what kind of thing a table describes.
+/// The key of the kind of a table.
 const KIND: &str = "kind";
 
 /// A table whose keys are all known, with exactly one of its groups of keys, if it has any.
@@ -80,7 +80,7 @@ impl<'a> Table<'a> {
         self.kind.map_or("", |kind| kind.word)
     }
 
-    /// Where the file is.
+    /// Path of the file.
     #[cfg(feature = "sweep")]
     pub(super) fn path(&self) -> &'a std::path::Path {
         self.source.path

@@ -1,4 +1,4 @@
-//! Values of a scene file, read with errors that name what was expected.
+//! Values of a scene file, read with errors that name the expected kind.
 
 use std::fmt::Display;
 use std::ops::Range;
@@ -109,7 +109,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// One of the `known` words, with what it stands for.
+    /// One of the `known` words, with its meaning.
     pub(super) fn word<T: Clone>(&self, known: &[(&str, T)]) -> Result<T, Error> {
         let words: Vec<&str> = known.iter().map(|(word, _)| *word).collect();
         let DeValue::String(string) = self.value else {

@@ -142,7 +142,7 @@ pub(super) fn insertion(text: &str, at: usize, entry: &str) -> (Range<usize>, St
     }
 }
 
-/// Whether the text `new` says what `text` says with `toml` merged into it.
+/// Whether the text `new` has the meaning of `text` with `toml` merged into it.
 fn is_meant(new: &str, text: &str, toml: &str) -> bool {
     let parse = |text| Some(DeTable::parse(text).ok()?.into_inner());
     let (Some(new), Some(mut old), Some(over)) = (parse(new), parse(text), parse(toml)) else {
@@ -191,7 +191,7 @@ mod tests {
             ("body.1.material.1.young=2e5", "1e5", "2e5"),
             ("body.1.area=2.0", "area = 1.0", "area = 2.0"),
             ("phase.press.hold.axes=x", "nodes = \"left\"", "nodes = \"left\", \"axes\" = \"x\""),
-            // what was not there before
+            // new keys
             ("body.mesh.length=2", "nodes = 3", "nodes = 3, \"length\" = 2"),
             ("body.material.poisson=0.3", "1e5 # Pa", "1e5 # Pa\n\"poisson\" = 0.3"),
             ("body.thickness=2", "area = 1.0", "area = 1.0\n\"thickness\" = 2"),

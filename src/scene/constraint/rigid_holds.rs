@@ -135,7 +135,7 @@ pub(crate) fn held_pieces(
     pieces.frames().iter().map(is_held).collect()
 }
 
-/// Where a node is under the displacements `u` (m); 0 beyond the dimension.
+/// Position of a node under the displacements `u` (m); 0 beyond the dimension.
 fn place(body: &Body, u: &[f64], node: usize) -> Vector3<f64> {
     let (d, x) = (body.dimension(), body.mesh().position(node));
     Vector3::from_fn(|i, _| if i < d { x[i] + u[node * d + i] } else { 0.0 })

@@ -1,6 +1,6 @@
-//! Where the constraints of a phase start.
+//! Start of the constraints of a phase.
 
-/// Where the rows of a phase start from.
+/// Origins of the rows of a phase.
 pub(crate) struct PhaseStart<'a> {
     /// Time (s).
     pub(crate) time: f64,

@@ -108,7 +108,7 @@ impl Scene {
 }
 
 impl Phase {
-    /// Where a dipole of the scene is in this phase (m), in place of its [position](Dipole::new) in the scene.
+    /// Position of a dipole of the scene in this phase (m), in place of its [position](Dipole::new) in the scene.
     pub fn dipole_position(self, dipole: impl Into<String>, position: impl Into<Signals>) -> Self {
         self.with_dipole(dipole.into(), &Dipole::POSITION, position.into())
     }

@@ -136,7 +136,7 @@ pub(crate) trait Actuator: Any + fmt::Debug + Send + Sync {
     /// Nodes and cells that have no image there.
     fn mapped(&self, map: &ComponentMap<'_>) -> Result<Arc<dyn Actuator>, InputError>;
 
-    /// Where it is, and where its mirror image is.
+    /// Its position, and that of its mirror image.
     ///
     /// # Errors
     /// Nodes and cells that do not exist.

@@ -57,7 +57,7 @@ pub(super) struct Level {
     pub(super) area: f64,
 }
 
-/// Why a volume has no level.
+/// Reason for which a volume has no level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum NoLevel {
     /// The walls enclose no more than this (m^3).
@@ -219,7 +219,7 @@ impl Basin {
         });
     }
 
-    /// Where the corners of a piece are.
+    /// Positions of the corners of a piece.
     fn places(&self, piece: &Piece, u: &[f64]) -> [[f64; 3]; 3] {
         let mut places = piece.natural;
         for (place, node) in places.iter_mut().zip(&piece.nodes[..self.dimension]) {

@@ -97,7 +97,7 @@ impl Chamber {
         Ok(self)
     }
 
-    /// Where it is, and where its mirror image is.
+    /// Its position, and that of its mirror image.
     ///
     /// # Errors
     /// Walls that were given by triangles, whose image is not known; nodes that do not exist.

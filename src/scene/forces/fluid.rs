@@ -179,7 +179,7 @@ impl Fluid {
         Ok(Self { nodes: self.nodes.as_ref().map(change).transpose()?, ..self.clone() })
     }
 
-    /// Where it is, with its velocities at some `times` (s), and where its mirror image is.
+    /// Its position, with its velocities at some `times` (s), and the position of its mirror image.
     ///
     /// # Errors
     /// Nodes that do not exist.

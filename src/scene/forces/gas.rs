@@ -200,7 +200,7 @@ impl GasInChamber {
         [self.exponent * rt * work - self.zero, rt * heating / pressure]
     }
 
-    /// How the temperature falls with the pressure, d ln T/d ln p.
+    /// Relative change of the temperature with the pressure, d ln T/d ln p.
     fn cooling(&self) -> f64 {
         (self.exponent - 1.0) / self.exponent
     }

@@ -192,7 +192,7 @@ impl Growth {
         Stretches { along, across }
     }
 
-    /// How fast these grow (1/s) by the `rate` of the strain.
+    /// Growth rates of these (1/s) by the `rate` of the strain.
     fn rates(&self, Stretches { along, across }: Stretches, rate: f64) -> [f64; 2] {
         let of_across = match (&self.course, self.across) {
             (None, _) => rate,

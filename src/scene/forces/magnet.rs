@@ -127,7 +127,7 @@ pub struct MagneticField {
 pub(crate) struct Gradient {
     /// d B_i / d x_j (T/m), row by row.
     rows: Vec<Vec<f64>>,
-    /// Where it adds nothing (m).
+    /// Position at which it adds nothing (m).
     centre: Vec<f64>,
 }
 
@@ -269,7 +269,7 @@ impl<const D: usize> From<[f64; D]> for MagneticField {
 
 /// The force of a magnetic field on the magnets of a body.
 pub(crate) struct MagnetForce {
-    /// Where the field was given.
+    /// Source of the field.
     input: String,
     dimension: usize,
     magnets: Magnets,

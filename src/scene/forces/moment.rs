@@ -1,4 +1,4 @@
-//! How deep what a closed surface encloses lies.
+//! Depth of the volume within a closed surface.
 
 use super::followed::{FollowedFaces, add_block};
 use crate::base::sparse::BlockMatrix;

@@ -314,7 +314,7 @@ impl Spring {
         if self.is_cable() { "cable" } else { "spring" }
     }
 
-    /// Where the spring runs.
+    /// Path of the spring.
     ///
     /// # Errors
     /// As [`joints`](Self::joints); places that follow each other and are the same; numbers out of range.

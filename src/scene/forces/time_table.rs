@@ -2,7 +2,7 @@
 
 use crate::base::input::{InputError, finite, positive};
 
-/// How often a table is repeated at most: it is written out as often.
+/// Largest number of repetitions of a table: all of them are stored.
 const MOST_REPEATED: f64 = 1e6;
 
 /// Vectors at given times (s). In between they are interpolated linearly; before the first time

@@ -1,4 +1,4 @@
-//! How obstacles move.
+//! Motion of obstacles.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ const MOST_PARTS: usize = 4096;
 /// Places within a part at which formula and cubic are compared.
 const PLACES: usize = 7;
 
-/// How an obstacle moves, from where its shape was given. Components beyond the dimension are 0.
+/// Motion of an obstacle, relative to its shape as given. Components beyond the dimension are 0.
 #[derive(Debug, Clone)]
 pub(super) enum Travel {
     /// With a constant velocity (m/s); without components it rests.

@@ -5,7 +5,7 @@ use nalgebra::{Rotation3, Vector3};
 use crate::base::input::{InputError, finite};
 use crate::base::vector::padded;
 
-/// How a box is turned about its middle.
+/// Rotation of a box about its middle.
 #[derive(Clone)]
 pub(crate) struct Turned {
     /// As it was given: the angle in the plane, the axis times the angle in space (rad).
@@ -35,7 +35,7 @@ impl Turned {
         Err(InputError::new(input, format!("{:?}", self.by), help))
     }
 
-    /// Where a point would be if it had not been turned with the box between `min` and `max`.
+    /// Position of a point before its rotation with the box between `min` and `max`.
     pub(super) fn back(&self, min: &[f64], max: &[f64], x: &[f64]) -> [f64; 3] {
         let middle = middle(min, max);
         let arm = self.rotation.inverse_transform_vector(&(Vector3::from(padded(x)) - middle));

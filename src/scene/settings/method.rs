@@ -255,7 +255,7 @@ impl Method {
         rows.map(|row| row.name).collect::<Vec<_>>().join(", ")
     }
 
-    /// Why it has no equations for a scene, if it has none.
+    /// Reason for which it has no equations for a scene, if it has none.
     pub(crate) fn why_not(self, scene: &Scene) -> Option<&'static str> {
         if self.information().has_internal_unknowns {
             return None;
@@ -304,7 +304,7 @@ impl FromStr for Method {
     }
 }
 
-/// How contact events are handled: nodes touch an obstacle or leave it, and with friction stick or slip.
+/// Treatment of contact events: nodes touch an obstacle or leave it, and with friction stick or slip.
 ///
 /// Those of a [`Touch`](crate::Touch) are always stepped over: its barrier has no kink.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -1,4 +1,4 @@
-//! How a scene is integrated: method, tolerances, limits.
+//! Settings of the integration of a scene: method, tolerances, limits.
 
 mod method;
 mod options;

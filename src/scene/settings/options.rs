@@ -17,7 +17,7 @@ pub struct SettingsOption {
     pub default: &'static str,
     /// Placeholder of its value in the help of the command.
     pub value_name: &'static str,
-    /// How its value is read and put into [`Settings`].
+    /// Reader of its value into [`Settings`].
     pub value: SettingsValue,
 }
 

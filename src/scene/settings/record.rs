@@ -11,7 +11,7 @@ use crate::base::input::{InputError, positive};
 use crate::scene::forces::way;
 use crate::scene::timeline::Scene;
 
-/// How a scene is integrated.
+/// Settings of the integration of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Integration method. Default: [`Method::Auto`].

@@ -337,7 +337,7 @@ impl Scene {
 }
 
 impl Phase {
-    /// How far an orifice is open, from 0 (shut) to 1 (the default), a number or any other [`Signal`].
+    /// Opening of an orifice, from 0 (closed) to 1 (the default), a number or any other [`Signal`].
     pub fn open(self, orifice: impl Into<String>, opening: impl Into<Signal>) -> Self {
         self.with(Input::new(Quantity::Opening, Target::one(orifice), opening.into()))
     }

@@ -446,7 +446,7 @@ impl Scene {
         forces.collect()
     }
 
-    /// How bodies touch.
+    /// Touches of bodies.
     pub fn touches(&self) -> &[Touch] {
         &self.touches
     }

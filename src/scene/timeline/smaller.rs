@@ -18,7 +18,7 @@ use crate::elements::material::Plane;
 use crate::elements::mesh::NodeMap;
 use crate::scene::constraint::Axis;
 
-/// How a model is smaller than the scene that it is of.
+/// Simplification of a model relative to its scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Smaller {
@@ -28,7 +28,7 @@ pub enum Smaller {
     Half {
         /// The axis that the plane of symmetry is normal to.
         axis: Axis,
-        /// Where on that axis the plane is (m).
+        /// Position of the plane on that axis (m).
         at: f64,
     },
     /// The section of a scene that is the same all along an axis: see [`Scene::in_plane`].

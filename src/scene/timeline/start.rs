@@ -1,4 +1,4 @@
-//! How a scene starts: displacements and velocities at t = 0.
+//! Start of a scene: displacements and velocities at t = 0.
 
 use std::sync::Arc;
 

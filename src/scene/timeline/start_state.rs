@@ -1,4 +1,4 @@
-//! How a scene starts from the state of another one: all but displacements and velocities.
+//! Start of a scene from the state of another one: all but displacements and velocities.
 
 use std::collections::BTreeMap;
 

@@ -13,7 +13,7 @@ use crate::studies::work_precision::look::Look;
 pub struct Advice {
     /// Quantity that has to be accurate.
     pub quantity: String,
-    /// The relative accuracy that was asked for, and what it is relative to: how much the quantity changes,
+    /// The requested relative accuracy, and its scale: the change of the quantity,
     /// in `unit`.
     pub accuracy: f64,
     /// See `accuracy`.
@@ -74,7 +74,7 @@ pub struct Advice {
 }
 
 impl Advice {
-    /// The fastest half, section or rod (of [`smaller`](Self::smaller)) with which what is enough stays so, if one saves time: its
+    /// The fastest half, section or rod (of [`smaller`](Self::smaller)) with which the sufficient model remains sufficient, if one saves time: its
     /// [error](Self::error_of) is within the accuracy.
     pub fn smaller_enough(&self) -> Option<&SmallerModel> {
         let is_right = |model: &&SmallerModel| {
@@ -86,7 +86,7 @@ impl Advice {
         right.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
 
-    /// Bound of the error of a [smaller model](Self::smaller) (relative): its change and the error of what is enough; of a rod, whose
+    /// Bound of the error of a [smaller model](Self::smaller) (relative): its change and the error of the sufficient model; of a rod, whose
     /// change is the distance from the reference, that and the error that the reference may have.
     pub fn error_of(&self, model: &SmallerModel) -> Option<f64> {
         let enough = self.enough.as_ref()?.parts?.sum();
@@ -122,7 +122,7 @@ pub struct Candidate {
     pub seconds: f64,
     /// Unknowns of the integrator.
     pub unknowns: usize,
-    /// Why there is no motion.
+    /// Reason for a missing motion.
     pub failure: Option<String>,
     /// Warnings of the run.
     pub warnings: Vec<String>,

@@ -14,7 +14,7 @@ use crate::scene::timeline::Scene;
 use crate::studies::work_precision::look::Look;
 use crate::studies::work_precision::quantity::Quantity;
 
-/// Finds out what of a scene has to be modelled for a [`Quantity`] to be right to an accuracy.
+/// Search for the cheapest model of a scene with a given accuracy of a [`Quantity`].
 ///
 /// It runs the scene with a richer model, on finer meshes, with tighter tolerances, and with things left out,
 /// one at a time, and compares.
@@ -55,7 +55,7 @@ impl<'a> Adviser<'a> {
         Self { scene, request: Request { accuracy, settings, quantity, budget: 60.0 }, file: None }
     }
 
-    /// How the scene as it was written is integrated; other candidates have its alpha. Default:
+    /// Settings of the scene as it was written; other candidates have its alpha. Default:
     /// [`Settings::default`].
     #[must_use]
     pub fn settings(mut self, settings: Settings) -> Self {
@@ -87,8 +87,8 @@ impl<'a> Adviser<'a> {
         self
     }
 
-    /// Runs candidates until it is known what is enough, or the budget is spent. `observer` is called after
-    /// each step with what is being run, and ends the search by [`ControlFlow::Break`]; the advice is what is
+    /// Runs candidates until a sufficient model is known, or the budget is spent. `observer` is called after
+    /// each step with the name of the current run, and ends the search by [`ControlFlow::Break`]; the advice is then what is
     /// known by then.
     ///
     /// # Errors

@@ -28,7 +28,7 @@ impl Advice {
             reasons.push(format!("{other} {}", self.change(law)));
         }
         if self.law.is_none() && rich.is_some_and(|rich| rich.strain == Strain::Cauchy) {
-            reasons.push("what Green strain changes is not known: it gave no motion".into());
+            reasons.push("the effect of Green strain is unknown: it gave no motion".into());
         }
         for candidate in &self.candidates {
             let is_mesh = |rich: &Choice| {
@@ -62,8 +62,7 @@ impl Advice {
             reasons.push(format!("lumped inertia {}", self.change(error)));
         }
         if let Some(together) = self.together {
-            let what =
-                "what matters little on the mesh as written, all together on the finest one,";
+            let what = "all negligible terms together, as found on the mesh as written, on the finest mesh,";
             reasons.push(format!("{what} {}", self.change(together)));
         }
         if let Some(estimate) = &self.mesh_estimate {
@@ -74,14 +73,13 @@ impl Advice {
                 (!mesh.is_nan()).then(|| percent(mesh))
             });
             let told = match estimate.is_reliable() {
-                true => format!(
-                    "is {} off at rest, as",
-                    percent(estimate.correction.abs() / self.scale)
-                ),
-                false => "is off at rest by what no".into(),
+                true => {
+                    format!("is {} off at rest by", percent(estimate.correction.abs() / self.scale))
+                }
+                false => "has an error at rest that is not reliably estimated by".into(),
             };
             reasons.push(format!(
-                "the mesh as written {told} adjoint-weighted residuals tell{}",
+                "the mesh as written {told} adjoint-weighted residuals{}",
                 paired.map_or_else(String::new, |paired| format!(" (by paired runs: {paired})"))
             ));
         }
@@ -119,8 +117,8 @@ impl fmt::Display for Advice {
         if let Some(until) = self.known_until {
             writeln!(
                 f,
-                "It can be known until t = {} s only: small errors grow there, as after impacts. What follows is about \
-                 the motion until t = {} s; rely on energies and means later on.",
+                "It is predictable until t = {} s only: small errors grow there, as after impacts. All that follows concerns \
+                 the motion until t = {} s; later, rely on energies and means.",
                 four_digits(until),
                 four_digits(self.end)
             )?;
@@ -139,14 +137,14 @@ impl fmt::Display for Advice {
         };
         match &self.enough {
             Some(enough) if self.mesh.is_some() => {
-                let besides = "Nothing that was tried is enough: no mesh is. On this one, besides what the mesh lacks:";
+                let besides = "No candidate is enough: no mesh is. On this one, apart from the error of the mesh:";
                 writeln!(f, "\n{besides} {}", run(enough))?;
             }
             Some(enough) if self.resolution.is_nan() => {
                 writeln!(f, "\nEnough on this mesh: {}", run(enough))?;
             }
             Some(enough) => writeln!(f, "\nEnough:      {}", run(enough))?,
-            None => writeln!(f, "\nNothing that was tried is enough.")?,
+            None => writeln!(f, "\nNo candidate is enough.")?,
         }
         let smaller = self.smaller_enough();
         if let Some((smaller, error)) =
@@ -163,24 +161,24 @@ impl fmt::Display for Advice {
         match self.mesh {
             Some(apart) => writeln!(
                 f,
-                "This mesh is not fine enough itself: the finest that was tried differs from it by {}, and may not be either. \
-                 Allow more time (--budget); loads on single nodes and sharp corners may leave no limit.",
+                "This mesh is too coarse: the finest that was tried differs from it by {}, and may be too coarse as well. \
+                 Allow more time (--budget); with loads on single nodes and sharp corners meshes may not converge.",
                 percent(apart)
             )?,
             None if self.resolution.is_nan() => {
                 let lacks = match self.written.parts.is_some_and(|parts| !parts.mesh.is_nan()) {
-                    true => "What the mesh lacks was estimated at rest",
-                    false => "What the mesh lacks is not known",
+                    true => "The error of the mesh was estimated at rest",
+                    false => "The error of the mesh is not known",
                 };
                 writeln!(f, "{lacks}: no finer one gave a motion to compare with.")?;
             }
             None => {
                 let resolution = percent(self.resolution);
-                let rate = "as the last three meshes tell";
+                let rate = "by the rate of the last three meshes";
                 let told = if self.has_rate { rate } else { "if halving cells halves the error" };
                 writeln!(
                     f,
-                    "What they are compared with may itself be off by {resolution}, {told}; this is counted as a part of the mesh."
+                    "The reference may itself be off by {resolution}, {told}; this is counted as a part of the mesh."
                 )?;
             }
         }
@@ -197,7 +195,7 @@ impl fmt::Display for Advice {
             writeln!(f, "- {less}{}", indicator.text)?;
         }
         let written = ("as written", &self.written);
-        let others = [("what is enough", &self.enough), ("the reference", &self.truth)];
+        let others = [("the sufficient model", &self.enough), ("the reference", &self.truth)];
         let others = others.iter().filter_map(|(name, run)| Some((*name, run.as_ref()?)));
         let mut told: Vec<&str> = Vec::new();
         for (name, candidate) in others.chain([written]) {
@@ -220,7 +218,7 @@ impl fmt::Display for Advice {
         write!(f, "\n{} runs in {}", self.runs, time_text(self.seconds))?;
         match self.known {
             0 => Ok(()),
-            known => write!(f, ", and {known} that were known"),
+            known => write!(f, ", and {known} from an earlier search"),
         }
     }
 }

@@ -97,7 +97,7 @@ impl Advice {
             let hidden = Series::area("var(--solid)", 0.6, below(self.resolution, &axes));
             series.insert(0, named(&format!("known to {}", percent(self.resolution)), hidden));
         }
-        // what matters is drawn over the rest
+        // important series are drawn over the rest
         known.sort_by_key(|(_, one)| (self.roles_of(one).len(), self.is_on_front(one)));
         for (_, candidate) in known {
             let parts = self.roles_of(candidate);

@@ -16,11 +16,11 @@ pub struct Choice {
     pub strain: Strain,
     /// Cells with more nodes; none as they were written.
     pub richer: Option<RicherCells>,
-    /// How often each cell is divided: see [`Scene::halved`].
+    /// Number of divisions of each cell: see [`Scene::halved`].
     pub halved: usize,
     /// Cells (from 0) that are divided after that, time after time: see [`Scene::halved_in`].
     pub halved_in: Vec<Vec<usize>>,
-    /// How inertia is distributed to the nodes.
+    /// Distribution of inertia to the nodes.
     pub inertia: Inertia,
     /// Whether all bodies are rigid: see [`Material::rigid`].
     pub is_rigid: bool,
@@ -29,7 +29,7 @@ pub struct Choice {
     /// Whether the equilibrium of the last phase, as `pliant static` finds it, replaces the end of the
     /// motion.
     pub is_static: bool,
-    /// How it is integrated.
+    /// Its settings.
     pub settings: Settings,
 }
 
@@ -219,7 +219,7 @@ impl Choice {
         sets
     }
 
-    /// The mesh in words: what differs from the one as written.
+    /// The mesh in words: differences from the one as written.
     pub(super) fn mesh(&self) -> String {
         let richer = self.richer.map(|richer| richer.to_string());
         let halved = (self.halved > 0).then(|| format!("cells halved {}", times(self.halved)));

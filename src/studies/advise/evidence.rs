@@ -4,9 +4,9 @@
 //! including the error of the reference. That follows from the rate of three meshes of one kind (order 2 at
 //! best, order 1 for cells divided in some places, and of two such meshes in a row twice the last step at
 //! least, as the error of all other cells does not show; ten times the last step where it is no smaller than
-//! the one before), and is all of the distance of the last two meshes where there are not three. Linear cells
+//! the one before), and is the whole distance of the last two meshes where there are not three. Linear cells
 //! alone are not trusted, because those that lock may agree with each other. Where the finest mesh is not
-//! known to be fine enough, the mesh is taken as written, and the answer says so with the difference of finer
+//! known to be fine enough, the mesh is used as written, and the answer reports it with the difference of finer
 //! ones.
 
 use super::choice::Choice;
@@ -17,7 +17,7 @@ use super::smaller_model::SmallerModel;
 use crate::dynamics::equilibrium::MeshEstimate;
 use crate::scene::timeline::Term;
 
-/// Runs, by their purpose, and what they show.
+/// Runs, by their purpose, and the conclusions from them.
 #[derive(Debug, Default)]
 pub(super) struct Evidence {
     /// The scene as it was written, by its own settings.
@@ -26,7 +26,7 @@ pub(super) struct Evidence {
     pub(super) tight: Option<Solved>,
     /// Models with hardly any error of the integration that something is learned from, most of them on the mesh as it was written.
     pub(super) models: Vec<Solved>,
-    /// The richest model on meshes from coarse to fine; the last one is what all is compared with.
+    /// The richest model on meshes from coarse to fine; the last one is the reference of all.
     pub(super) meshes: Vec<Solved>,
     /// Finer meshes that are not fine enough either: then the mesh is taken as it was written, and `meshes`
     /// has it alone.
@@ -142,7 +142,7 @@ impl Evidence {
         Some(self.finer.last()?.error(self.truth()?))
     }
 
-    /// The fastest of those that are right; what is rigid, which has the fewest unknowns, before others.
+    /// The fastest of the accurate ones; rigid models, with the fewest unknowns, before others.
     pub(super) fn best(&self, accuracy: f64) -> Option<&Solved> {
         let right = self.all().filter(|solved| self.is_right(solved, accuracy));
         let is_soft = |solved: &Solved| !solved.choice.is_rigid;

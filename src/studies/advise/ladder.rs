@@ -1,12 +1,12 @@
-//! The stages of the search, one after the other: tolerance, alpha, law, mesh, what may be left out, method.
+//! The stages of the search, one after the other: tolerance, alpha, law, mesh, omitted terms, method.
 //!
-//! Each stage is one question, answered by runs with hardly any error of the integration: tolerance; alpha,
-//! ten times as much until that changes nothing; measure of strain; inertia, where it was written lumped;
+//! Each stage is one question, answered by runs with a negligible error of the integration: tolerance; alpha,
+//! increased by ten until that changes nothing; measure of strain; inertia, where it was written lumped;
 //! meshes (halved; quadratic; quadratic and halved), until three of one kind show that they are fine enough
 //! or the budget is spent; omitted terms; inertia. Where halving all cells would take too long, triangles and
 //! tetrahedra are divided where most (0.8) of the jumps of their strains are, by Zienkiewicz and Zhu's
-//! estimate over the motion. Terms that seem to matter little on the mesh as written are left out together on
-//! the finest one and count only if they matter little there, too, as a coarse mesh may hide them. The model
+//! estimate over the motion. Terms that seem negligible on the mesh as written are omitted together on
+//! the finest one and count as negligible only if they are so there, too, as a coarse mesh may hide them. The model
 //! that is enough is swept by methods and tolerances, the fastest of those by the treatment of contact
 //! events; a run that takes twice as long as the fastest right one is cut short. For a number at the end of
 //! the motion the equilibrium is a candidate, too.
@@ -22,12 +22,12 @@ use crate::scene::settings::{ContactEvents, Method, Settings};
 use crate::scene::timeline::Shrink;
 use crate::studies::work_precision::tightening;
 
-/// Parts of the accuracy that errors of each kind may take: of the integration in the runs by which models
+/// Fractions of the accuracy allotted to errors of each kind: of the integration in the runs by which models
 /// are compared, and of alpha.
 const OF_TIGHT: f64 = 0.05;
 const OF_ALPHA: f64 = 0.05;
-/// The same, of what the error of the finest mesh leaves of it: of the law, of each term that is left out, and of the mesh. Their sum
-/// leaves room for the integration.
+/// The same, of the remainder after the error of the finest mesh: of the law, of each omitted term, and of the mesh. Their sum
+/// leaves a margin for the integration.
 const OF_LAW: f64 = 0.2;
 const OF_TERM: f64 = 0.05;
 const OF_MESH: f64 = 0.4;
@@ -246,7 +246,7 @@ impl Search<'_> {
         Ok(true)
     }
 
-    /// Tries what may be left out.
+    /// Tries to omit terms.
     fn leave_out(&mut self, rich: &Solved, found: &mut Evidence) -> Result<(), Stop> {
         for term in self.scene.terms() {
             let choice = Choice { without: vec![term.clone()], ..rich.choice.clone() };
@@ -321,7 +321,7 @@ impl Search<'_> {
 
     /// Tries the equilibrium in place of the motion, and estimates its error on the mesh as it was written.
     fn rest(&mut self, enough: &Choice, found: &mut Evidence) -> Result<(), Stop> {
-        // what damps a motion has no effect at rest
+        // damping has no effect at rest
         let choice = Choice { is_static: true, ..enough.clone() };
         let Some(solved) = self.run(&choice)? else { return Ok(()) };
         found.sweep.push(solved.clone());
@@ -351,7 +351,7 @@ impl Search<'_> {
         }
         let mut fastest: Option<Solved> = None;
         for (method, inertia) in ways {
-            // what the inertia changes on this mesh
+            // the effect of the inertia on this mesh
             if inertia != enough.inertia {
                 self.known_or_run(&Choice { inertia, ..enough.clone() }, found)?;
             }

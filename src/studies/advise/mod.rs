@@ -1,9 +1,9 @@
 //! Recommended model of a scene: the adviser.
 //!
-//! A first look comes before all else. A `Choice` is a model of a scene with its settings; its application to
-//! a scene and the `--set` options that say the same stand side by side, and a test compares them bit for
-//! bit. Each run is a line of `runs.jsonl`, by a hash of scene and choice, so that a search goes on where
-//! another was ended. Motions that two runs at 1e-11 and 1e-12 do not agree on are cut at nine tenths of the
+//! The search begins with a first look. A `Choice` is a model of a scene with its settings; its application to
+//! a scene and the equivalent `--set` options are side by side, and a test compares them bit for
+//! bit. Each run is a line of `runs.jsonl`, by a hash of scene and choice, so that a search continues where
+//! another was ended. Motions on which two runs at 1e-11 and 1e-12 do not agree are cut at nine tenths of the
 //! time until which they do. The promises are tested against independent runs in `docs/advice.md`.
 
 mod advice;

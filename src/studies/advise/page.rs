@@ -18,17 +18,17 @@ use crate::studies::work_precision::truth::reason;
 const STYLE: &str = include_str!("page/page.css");
 /// Processor time that each of the motions may take.
 const LONGEST: Duration = Duration::from_secs(20);
-/// How lines about one candidate begin in the text of the advice.
+/// Beginnings of lines about one candidate in the text of the advice.
 const NAMES: [&str; 3] = ["Enough", "Smaller", "As written"];
 
 impl Advice {
     /// Writes the advice as one HTML file for a web browser, without a network.
     ///
     /// It has the text of the advice, the errors of all candidates over their times, a table of them, and the
-    /// motions of the scene as it was `written` and of what is enough, side by side, which are run once more,
+    /// motions of the scene as it was `written` and of the sufficient model, side by side, which are run once more,
     /// with `sampling`. `title` is its heading.
     ///
-    /// `observer` is called after each step with what is being run, and ends the run by
+    /// `observer` is called after each step with the name of the current run, and ends the run by
     /// [`ControlFlow::Break`]: then the page is without that motion, as it is if a run fails or takes more
     /// than 20 s of processor time, and says so.
     ///
@@ -70,8 +70,7 @@ impl Advice {
         let sets = self.enough.as_ref().map_or_else(String::new, |_| {
             let lines = escaped(&self.set().join("\n"));
             match &lines[..] {
-                "" => "<p>What is enough stands in the scene file: nothing has to be set.</p>\n"
-                    .into(),
+                "" => "<p>The scene file is enough as it is: nothing has to be set.</p>\n".into(),
                 _ => format!(
                     "<h3>What is enough, as <code>--set</code> takes it:</h3>\n<pre>{lines}</pre>\n"
                 ),

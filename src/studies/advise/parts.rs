@@ -2,8 +2,8 @@
 //!
 //! The error of the scene as written and of the answer is split by runs between them and the reference: same
 //! model and mesh without error in time; richest model on that mesh; reference, whose own error counts as one
-//! of the mesh. Errors of different signs may cancel in a run and part again in the next scene: the answer is
-//! right by the sum of its parts, and that sum is reported.
+//! of the mesh. Errors of different signs may cancel in one run but not in the next scene: the answer is
+//! accepted by the sum of its parts, and that sum is reported.
 
 use crate::base::input::percent;
 use std::fmt;
@@ -13,9 +13,9 @@ use std::fmt;
 /// parts themselves may cancel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
-    /// Of the model: measure of strain, inertia, alpha, what is left out.
+    /// Of the model: measure of strain, inertia, alpha, omitted terms.
     pub model: f64,
-    /// Of the mesh, with what the finest mesh may be off by itself. If no other mesh was compared with, what residuals tell, or NaN.
+    /// Of the mesh, with the possible error of the finest mesh. Without another mesh to compare with, the estimate by residuals, or NaN.
     pub mesh: f64,
     /// Of the integration over time.
     pub time: f64,

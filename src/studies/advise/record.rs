@@ -17,8 +17,8 @@ impl Advice {
     /// The keys are `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`, `has_rate`,
     /// `mesh`, `alphas`, `law`, `inertia`, `terms`, `together`, `candidates`, `known_until`, `end`, `mesh_estimate`,
     /// `smaller`, `set`, `reduced`, `look`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` means not
-    /// known. A candidate has `model` and `set`, what has to be set for it in the file of the scene; the key `set` is that
-    /// of what is enough, by the half or section with which it stays so.
+    /// known. A candidate has `model` and `set`, the settings for it in the file of the scene; the key `set` is that
+    /// of the sufficient model, by the half or section with which it remains sufficient.
     ///
     /// # Errors
     /// [`Error::Output`] if it cannot be written.

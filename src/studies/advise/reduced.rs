@@ -1,4 +1,4 @@
-//! The last rung: what a reduced model of what is enough would save.
+//! The last stage: the saving by a reduced model of the sufficient model.
 
 use std::time::Instant;
 

@@ -6,7 +6,7 @@ use crate::base::input::{percent, short};
 use crate::studies::reduce::pays_from;
 use crate::studies::work_precision::time_text;
 
-/// A reduced model of what is enough, learned from its own run.
+/// A reduced model of the sufficient model, learned from its run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReducedCandidate {
     /// Its unknowns: displacements of shapes.
@@ -15,7 +15,7 @@ pub struct ReducedCandidate {
     pub cells: [usize; 2],
     /// Change of the quantity by the reduced model, relative to the same scale as the accuracy.
     pub change: f64,
-    /// Time (s) of a run by it, and of one of what is enough.
+    /// Time (s) of a run by it, and of one of the sufficient model.
     pub seconds: f64,
     /// See `seconds`.
     pub full_seconds: f64,

@@ -1,4 +1,4 @@
-//! A rung of the ladder: what changes if nothing strains.
+//! A stage of the search: rigid bodies in place of deformable ones.
 
 use super::choice::Choice;
 use super::evidence::Evidence;
@@ -58,7 +58,7 @@ impl Search<'_> {
         best.choice.is_of_soft_motion().then(|| [best.clone(), exact.clone()])
     }
 
-    /// Runs a rigid choice, which is cut short where it takes much longer than the `seconds` of what strains.
+    /// Runs a rigid choice, which is cut short where it takes much longer than the `seconds` of the deformable model.
     fn run_within(
         &mut self,
         choice: &Choice,

@@ -22,11 +22,11 @@ pub(super) struct Outcome {
     pub(super) seen: Option<Seen>,
     pub(super) seconds: f64,
     pub(super) unknowns: usize,
-    /// Why there is no motion.
+    /// Reason for a missing motion.
     pub(super) failure: Option<String>,
     /// Warnings of the run.
     pub(super) warnings: Vec<String>,
-    /// Cells in which most jumps of strain are: what to divide next. None where cells cannot be divided in some places.
+    /// Cells with most jumps of strain, to be divided next. None where cells cannot be divided locally.
     pub(super) worst: Vec<usize>,
 }
 

@@ -60,7 +60,7 @@ impl Solved {
     }
 }
 
-/// Why the search ends before its time: the budget is spent, the observer says so, or runs cannot be kept.
+/// Reason for an early end of the search: the budget is spent, the observer ends it, or runs cannot be stored.
 #[derive(Debug)]
 pub(super) enum Stop {
     Budget,
@@ -84,14 +84,14 @@ pub(super) struct Search<'a> {
     pub(super) known: usize,
     /// The longest time (s) that a run may take.
     pub(super) patience: f64,
-    /// Why the last run was cut short, if it was.
+    /// Reason for which the last run was cut short, if it was.
     pub(super) cut: Option<Cut>,
 }
 
-/// Why a run is cut short.
+/// Reason for cutting a run short.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cut {
-    /// The observer says so.
+    /// A request of the observer.
     Interrupted,
     /// Its share of the time that is left is spent.
     Share,

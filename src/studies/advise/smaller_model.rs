@@ -1,12 +1,12 @@
-//! Smaller models of a motion that is right.
+//! Smaller models of an accurate motion.
 //!
-//! A rigid model is a candidate as any other, and the answer where it is right, having the fewest unknowns;
+//! A rigid model is a candidate as any other, and the answer where it is accurate, as it has the fewest unknowns;
 //! no run is spent on it where the distance of the whole motion from the nearest rigid one
 //! (`studies/work_precision/rigid_motion.rs`, Kabsch's rotation of each piece at each time, which no rigid
 //! motion can undercut) is above the accuracy. Half and section are compared with the whole by runs with
-//! hardly any error of the integration (`smaller_run.rs`), so that the change is the symmetry that the motion
-//! breaks; one that saves time within the accuracy is written with the answer (`Advice::set`). So is the rod in
-//! place of a slender solid, whose change is its distance from the reference. The last rung
+//! a negligible error of the integration (`smaller_run.rs`), so that the change is the asymmetry of the
+//! motion; one that saves time within the accuracy is written with the answer (`Advice::set`). So is the rod in
+//! place of a slender solid, whose change is its distance from the reference. The last stage
 //! is a reduced model, learned within half of the accuracy. Half, section, rod and reduced model are no
 //! candidates: their errors are of the model that was found, on its mesh.
 
@@ -21,16 +21,16 @@ use crate::studies::work_precision::time_text;
 /// A smaller model of a motion that is right, on the same mesh and with the same settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SmallerModel {
-    /// How it is smaller.
+    /// Kind of simplification.
     pub kind: Smaller,
     /// Change of the quantity by the model, relative to the same scale as the accuracy, from runs with small integration errors; of a rod
     /// the distance from the reference, with that of its faster run.
     pub change: f64,
-    /// Time (s) of a run by it, and of one of what it is a model of.
+    /// Time (s) of a run by it, and of one of the full model.
     pub seconds: f64,
     /// See `seconds`.
     pub full_seconds: f64,
-    /// Unknowns of the integrator, and those of what it is a model of; what is rigid counts with all its nodes, most of which move
+    /// Unknowns of the integrator, and those of the full model; a rigid body counts with all its nodes, most of which move
     /// with others.
     pub unknowns: usize,
     /// See `unknowns`.
@@ -38,7 +38,7 @@ pub struct SmallerModel {
 }
 
 impl SmallerModel {
-    /// A model by the times (s) and unknowns of two runs: one by it, and one of what it is a model of.
+    /// A model by the times (s) and unknowns of two runs: one by it, and one of the full model.
     pub(super) fn new(kind: Smaller, change: f64, runs: [(f64, usize); 2]) -> Self {
         let [(seconds, unknowns), (full_seconds, full_unknowns)] = runs;
         Self { kind, change, seconds, full_seconds, unknowns, full_unknowns }

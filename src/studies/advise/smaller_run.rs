@@ -1,7 +1,7 @@
-//! Runs of a smaller model beside what it is a model of.
+//! Runs of a smaller model, compared with the full model.
 //!
-//! Half and section are compared with the motion that was found right, on its mesh. The rod in place of a slender solid has no mesh of
-//! its own to share with it, and is compared with the reference; more and more elements are tried, until it is right or changes no more.
+//! Half and section are compared with the accurate motion, on its mesh. The rod in place of a slender solid has no mesh of
+//! its own to share with it, and is compared with the reference; more and more elements are tried, until it is accurate or changes no more.
 
 use super::evidence::Evidence;
 use super::ladder::PATIENCE;
@@ -16,15 +16,15 @@ use crate::studies::work_precision::truth::reason;
 
 /// Numbers of elements of a rod that are tried, one after the other, ...
 const ELEMENTS: [usize; 4] = [5, 10, 20, 40];
-/// ... as long as what it changes is below this part of what the one before changes.
+/// ... as long as its change is below this fraction of that of the one before.
 const CHANGING: f64 = 0.8;
 
-/// A smaller model, what is read in it, and what of the motion that it is a model of that is compared with.
+/// A smaller model, the quantity that is read in it, and the part of the full motion that it is compared with.
 struct Shrunk {
     kind: Smaller,
     scene: Scene,
     quantity: Quantity,
-    /// Its nodes that stand for each of the nodes compared with, with their shares.
+    /// Its nodes that represent each of the compared nodes, with their weights.
     shares: Vec<Vec<(usize, f64)>>,
     full: Seen,
 }
@@ -126,8 +126,8 @@ impl Search<'_> {
         Ok(Shrunk { kind, scene, quantity, shares, full: full.clone() })
     }
 
-    /// Runs a smaller model as exactly as what it is a model of was run, to see what it changes, and then as fast: of a rod, which is
-    /// compared with the reference, that adds what the faster run changes.
+    /// Runs a smaller model with the accuracy of the run of the full model, to find its change, and then as fast: for a rod, which is
+    /// compared with the reference, the change by the faster run is added.
     fn run_smaller(
         &mut self,
         [best, exact]: [&Solved; 2],
@@ -154,7 +154,7 @@ impl Search<'_> {
         Ok(Some(SmallerModel::new(kind, change, runs)))
     }
 
-    /// Runs a smaller model with the settings of a run of what it is a model of, if it was not run before.
+    /// Runs a smaller model with the settings of a run of the full model, if it was not run before.
     fn run_as(
         &mut self,
         full: &Solved,

@@ -1,7 +1,7 @@
-//! Equilibria that were measured: what is set for each of them, and what sensors have read there.
+//! Measured equilibria: the values set for each of them, and the sensor readings.
 //!
-//! The equilibria of one set of unknowns are found on all cores, each by itself. The scene tells which column
-//! of a table is a sensor and which a key, so that a table is what was measured and nothing else.
+//! The equilibria of one set of unknowns are found on all cores, independently. The scene determines which column
+//! of a table is a sensor and which a key, so that a table has measurements only.
 
 use std::path::Path;
 

@@ -56,12 +56,12 @@ pub(super) fn confidence(
     Ok((0..columns).map(half_width).collect())
 }
 
-/// How many independent numbers a series counts as: n / (1 + 2 sum |rho_k|), with the autocorrelations rho_k
+/// Effective number of independent numbers of a series: n / (1 + 2 sum |rho_k|), with the autocorrelations rho_k
 /// up to n/2 that are larger than three times 1/sqrt(n), their standard deviation for independent numbers.
 ///
 /// The variance of the fitted values grows by the factor 1 + 2 sum rho_k r_k, with the autocorrelations r_k
 /// of the slopes (M. S. Bartlett, Journal of the Royal Statistical Society 98 (1935) 536-543): by the factor
-/// above or less, whatever the slopes are.
+/// above or less, for any slopes.
 pub(super) fn independent(series: &[f64]) -> f64 {
     let count = series.len() as f64;
     let square = norm(series).powi(2);

@@ -6,8 +6,8 @@
 //! above 0. Differences are central, with a step of the square root of the tolerance of the runs: the noise of
 //! results is then an error of that relative size in a derivative, and an unknown whose column of the
 //! Jacobian is below that fraction of the largest one, or a combination whose singular value is, is not
-//! fitted but named, before the search and after it. A run that fails is a bad step with large residuals; a
-//! derivative then takes the other side.
+//! fitted but reported, before the search and after it. A run that fails is a bad step with large residuals; a
+//! derivative then uses the other side.
 
 use rayon::prelude::*;
 use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide, MPSuccess};
@@ -30,14 +30,14 @@ pub struct Fitted {
     pub unknowns: Vec<Determined>,
     /// Root mean square of the residuals: in the middle of the ranges, and at the values that were found.
     pub rms: [f64; 2],
-    /// How many residuals there are.
+    /// Number of residuals.
     pub residuals: usize,
     /// How many independent residuals they count as, at the values that were found: n / (1 + 2 sum |rho_k|)
     /// for a series of n, with its significant autocorrelations rho_k.
     pub independent: f64,
-    /// How often the residuals were computed.
+    /// Number of evaluations of the residuals.
     pub runs: usize,
-    /// How many of these runs failed: they counted as bad steps.
+    /// Number of failed runs among these: they counted as bad steps.
     pub failed: usize,
     /// Whether the search has converged: further runs would change next to nothing.
     pub is_converged: bool,
@@ -170,7 +170,7 @@ struct Search<'a> {
     bad: f64,
     /// A point with known derivatives, and these.
     known: Option<(Vec<f64>, Vec<Vec<f64>>)>,
-    /// Why a run failed.
+    /// Reason for the failure of a run.
     failure: Option<Error>,
     settings: MPConfig,
     limits: Vec<MPPar>,

@@ -1,4 +1,4 @@
-//! Unknowns of a model, fitted to what was measured: [`least_squares`] of any residuals, and [`SceneFit`] of
+//! Unknowns of a model, fitted to measurements: [`least_squares`] of any residuals, and [`SceneFit`] of
 //! a scene file, in motion or in equilibria.
 
 mod at_rest;

@@ -1,8 +1,8 @@
-//! Where a scene was measured: at times, or in equilibria.
+//! Rows of measurements of a scene: times, or equilibria.
 
 use crate::dynamics::trajectory::Quantity;
 
-/// Measurements: each sensor, with what it has read row by row.
+/// Measurements: each sensor, with its readings row by row.
 pub(super) type Columns = Vec<(Quantity, Vec<f64>)>;
 
 /// The rows of measurements.
@@ -10,7 +10,7 @@ pub(super) type Columns = Vec<(Quantity, Vec<f64>)>;
 pub(super) enum Rows {
     /// Times of a motion (s), ascending.
     Times(Vec<f64>),
-    /// Equilibria: what is set for each of them, and what they are drawn over.
+    /// Equilibria: the values set for each of them, and the abscissa of their plots.
     Equilibria { set: Vec<Vec<String>>, label: String, along: Vec<f64> },
 }
 

@@ -1,4 +1,4 @@
-//! Keys of a scene file, fitted to what sensors of the scene have measured, in motion or at rest.
+//! Keys of a scene file, fitted to measurements of its sensors, in motion or at rest.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ use crate::scene::timeline::Scene;
 /// The run of a scene, with the settings of its file.
 type Run<'a> = &'a mut dyn FnMut(&SceneFile, &Scene, &Sampling) -> Result<Trajectory, Error>;
 
-/// A scene file, and what was measured of the scene.
+/// A scene file, and the measurements of the scene.
 ///
 /// Runs have the tolerance of the file, `solver.rtol`, and equilibria `statics.rtol`. Measurements outside the time of the scene do not
 /// count. If sensors have several units, residuals are divided by the root mean square variation of what was
@@ -32,7 +32,7 @@ pub struct SceneFit {
     text: String,
     path: PathBuf,
     overrides: Vec<String>,
-    /// Where something was measured.
+    /// The times or equilibria of the measurements.
     rows: Rows,
     /// The measurements there.
     columns: Columns,
@@ -59,7 +59,7 @@ pub struct FittedColumn {
     /// Root mean square of the residuals, in its unit: in the middle of the ranges, and at the values that
     /// were found.
     pub rms: [f64; 2],
-    /// The model less what was measured, in its unit, over time, or equilibrium by equilibrium.
+    /// The model less the measurements, in their unit, over time, or equilibrium by equilibrium.
     pub residuals: Vec<f64>,
 }
 
@@ -241,7 +241,7 @@ impl SceneFit {
         Ok(SceneFitted { fitted, columns: columns.collect(), rows: self.rows.clone() })
     }
 
-    /// The model less what was measured, column by column.
+    /// The model less the measurements, column by column.
     fn residuals(&self, unknowns: &[Unknown], values: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
         let set = unknowns.iter().zip(values).map(|(unknown, value)| set(&unknown.name, *value));
         let overrides: Vec<String> = self.overrides.iter().cloned().chain(set).collect();
@@ -300,7 +300,7 @@ impl SceneFit {
         Ok(places.into_iter().map(|place| found.sample().sensors[place]).collect())
     }
 
-    /// Where the sensors of the columns are among those that were read.
+    /// Indices of the sensors of the columns among those that were read.
     fn places(&self, motion: &Trajectory) -> Result<Vec<usize>, InputError> {
         let sensors = motion.sensors().iter();
         let place = |(quantity, _): &(Quantity, Vec<f64>)| {
@@ -423,7 +423,7 @@ impl fmt::Display for SceneFitted {
         if *independent < *residuals as f64 {
             writeln!(
                 f,
-                "what is left over is alike from one row to the next: {residuals} residuals count as {independent:.0} independent ones"
+                "residuals of successive rows are correlated: {residuals} residuals count as {independent:.0} independent ones"
             )?;
         }
         let end = if *is_converged { "" } else { "; the search has not come to its end" };

@@ -23,7 +23,7 @@ pub struct Gradient {
     pub is_at_rest: bool,
     /// The method of the derivatives.
     pub method: Method,
-    /// Why a method that costs less was not taken; none if it was not tried, or if the method was asked for.
+    /// Reason for which a cheaper method was not used; none if it was not tried, or if the method was requested.
     pub reason: Option<String>,
     /// Relative tolerances of the runs: that of the value and the derivatives, and the one that they are compared with.
     pub rtols: [f64; 2],
@@ -31,7 +31,7 @@ pub struct Gradient {
     pub derivatives: Vec<Derivative>,
     /// Runs or searches for equilibria, without those of checks.
     pub runs: usize,
-    /// Their steps, in multiples of those of the run of the value; steps taken back count as about three, and two fifths for each scene with
+    /// Their steps, in multiples of those of the run of the value; adjoint steps count as about three, and two fifths for each scene with
     /// another number; linearized equilibria as an iteration, and one for each.
     pub cost: f64,
 }
@@ -55,9 +55,9 @@ pub struct Derivative {
     pub by_tolerance: f64,
     /// Whether the objective does not depend on the number: all runs had the same value.
     pub is_constant: bool,
-    /// Why it says little about the motion with another number, if it does.
+    /// Reason for which it is of little use for another value of the number, if there is one.
     pub doubt: Option<Doubt>,
-    /// The same by whole runs, if that was asked for.
+    /// The same by whole runs, if requested.
     pub check: Option<Check>,
 }
 

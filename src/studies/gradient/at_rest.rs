@@ -34,7 +34,7 @@ pub(super) struct Balanced {
 
 impl Balanced {
     /// # Errors
-    /// Why there is no dual solution.
+    /// Reason for a missing dual solution.
     pub(super) fn new(found: &Equilibrium, quantity: &Quantity) -> Result<Self, Failed> {
         let (scene, sample) = (found.trajectory().scene(), found.sample().clone());
         if !found.removed.is_empty() {

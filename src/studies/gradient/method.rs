@@ -5,11 +5,11 @@ use std::str::FromStr;
 
 use crate::base::input::InputError;
 
-/// How derivatives are found.
+/// Method of derivatives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The steps of a run taken back, or the dual of the equations of an equilibrium: the discrete adjoint, for any number of numbers at once.
+    /// The discrete adjoint of the steps of a run, or the dual of the equations of an equilibrium: for any number of numbers at once.
     Adjoint,
     /// Differences of runs that take the same steps.
     SameSteps,

@@ -16,14 +16,14 @@ pub enum Objective {
     Quantity(String),
     /// The same of the equilibrium, as `tip.y`.
     QuantityAtRest(String),
-    /// The sum of the squares of what sensors read less what was measured over time. With sensors of several units, residuals are
+    /// The sum of the squares of sensor readings less measurements over time. With sensors of several units, residuals are
     /// divided as in a [`SceneFit`](crate::fit::SceneFit).
     LeastSquares(Measured),
     /// The same of equilibria.
     LeastSquaresAtRest(MeasuredAtRest),
 }
 
-/// A number of one run, the history that led to it, and what it cost.
+/// A number of one run, its history, and its cost.
 #[derive(Debug, Clone)]
 pub(super) struct Seen {
     /// The history of a reading, evenly from the start to the end, whose last value is the number; or the number alone.

@@ -21,7 +21,7 @@ use crate::scene::timeline::Scene;
 use crate::studies::fit::SceneFit;
 use crate::studies::work_precision::Quantity;
 
-/// A scene file, and what is seen of its runs.
+/// A scene file, and the readings of its runs.
 #[derive(Debug, Clone)]
 pub(super) struct Runs {
     pub(super) reader: SceneReader,
@@ -42,7 +42,7 @@ pub(super) enum Target {
 /// The part of a run that others by other numbers need.
 pub(super) enum Record {
     Steps(StepList),
-    /// With the states that the steps lead to, to be taken back.
+    /// With the states after the steps, for the adjoint.
     States(StepList, Tape),
     Equilibrium(Box<Balanced>),
 }
@@ -56,7 +56,7 @@ impl Record {
     }
 }
 
-/// Why there is no derivative.
+/// Reason for a missing derivative.
 pub(super) enum Stop {
     /// The method is not one for this scene, and why.
     Unsuited(String),
@@ -87,9 +87,9 @@ impl Base {
 }
 
 /// Which objectives are found by taking steps back.
-pub(super) const AT_THE_END: &str = "steps are taken back for readings at the end";
+pub(super) const AT_THE_END: &str = "adjoint gradients need a reading at the end";
 
-/// Why the steps of one run are not those of another.
+/// Reason for which the steps of one run are not those of another.
 pub(super) const OTHER_STEPS: &str = "a run with another value needs other steps";
 
 /// Runs so far, and their steps.
@@ -105,7 +105,7 @@ impl Costs {
         self.steps.fetch_add(steps, Ordering::Relaxed);
     }
 
-    /// Adds the steps of a run that were taken back, with so many scenes with other numbers: about three of them, and two fifths of a step for
+    /// Adds the adjoint steps of a run, with so many scenes with other numbers: about three of them, and two fifths of a step for
     /// each scene (measured with a beam of some hundred triangles).
     pub(super) fn add_taken_back(&self, steps: usize, others: usize) {
         self.add(3 * steps + 2 * steps * others / 5);
@@ -217,7 +217,7 @@ impl Runs {
     /// The Lagrangian of the recorded steps or equilibrium for scenes with other values of numbers.
     ///
     /// # Errors
-    /// Why steps cannot be taken back, or what an equilibrium cannot be.
+    /// Reason for which the adjoint of steps, or the dual of an equilibrium, is not available.
     pub(super) fn lagrangians(
         &self,
         base: &Base,

@@ -1,4 +1,4 @@
-//! The gradient of an objective of a scene file: its runs, and what they tell.
+//! The gradient of an objective of a scene file: its runs, and the derivatives from them.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -46,13 +46,13 @@ pub struct SceneGradient {
     is_checked: bool,
     /// The relative tolerance of the file, of motions or of equilibria.
     rtol: f64,
-    /// Why runs do not take the steps of another one.
+    /// Reason for which runs cannot take the steps of another one.
     refused: Option<String>,
     /// Whether the objective is a reading at the end of a motion, or of an equilibrium.
     is_at_end: bool,
 }
 
-/// How runs are made, and which steps differences have.
+/// Settings of the runs, and steps of differences.
 struct Scheme {
     method: Method,
     /// Relative tolerances: that of the derivative, and the larger one that it is compared with.
@@ -78,10 +78,10 @@ const FACTORS: [f64; 2] = [16.0, 1.0 / 16.0];
 /// Relative tolerances of equilibria.
 const AT_REST: [f64; 2] = [1e-13, 1e-12];
 
-/// Why equilibria are not found by the steps of others.
+/// Reason for which equilibria are not found by the steps of others.
 const NO_STEPS: &str = "equilibria have no steps";
 
-/// Numbers from which on steps are taken back, if nothing is said.
+/// Count of numbers from which on the adjoint is the default.
 const MANY: usize = 2;
 
 /// Part of a derivative by which results of both tolerances may differ.
@@ -185,7 +185,7 @@ impl SceneGradient {
     }
 
     /// By this method. Default: [`Method::Adjoint`] of an equilibrium, and by several numbers of a reading at the end; else, and where steps
-    /// cannot be taken back, [`Method::SameSteps`]; [`Method::Differences`] where runs cannot take the same steps and equilibria cannot be
+    /// have no adjoint, [`Method::SameSteps`]; [`Method::Differences`] where runs cannot take the same steps and equilibria cannot be
     /// linearized.
     ///
     /// # Errors
@@ -270,7 +270,7 @@ impl SceneGradient {
         }
     }
 
-    /// Adds checks, if that is asked for.
+    /// Adds checks, if requested.
     fn with_check(
         &self,
         mut gradient: Gradient,
@@ -352,7 +352,7 @@ impl SceneGradient {
         })
     }
 
-    /// The derivatives by all numbers, from runs whose steps are taken back; or why they cannot be.
+    /// The derivatives by all numbers, by the adjoint of the steps of runs; or the reason for its failure.
     ///
     /// At the smaller tolerance with the first step of the differences alone, which has the least round-off: what longer steps are off by is
     /// that at the larger one.

@@ -14,7 +14,7 @@ use crate::io::output::Chart;
 use crate::studies::fit::Unknown;
 use crate::studies::gradient::{Derivative, Gradient};
 
-/// Part of the largest derivative by a number above which an error is told.
+/// Fraction of the largest derivative above which an error is reported.
 const MEANINGFUL: f64 = 0.1;
 
 /// The best numbers of a scene, and all that were tried.
@@ -28,7 +28,7 @@ pub struct Optimum {
     pub evaluations: Vec<Evaluation>,
     /// The place of the best one among them.
     pub best: usize,
-    /// Why there are no more.
+    /// Reason for the end.
     pub ending: Ending,
 }
 
@@ -82,7 +82,7 @@ impl Optimum {
         gradients.map(|gradient| gradient.runs).sum()
     }
 
-    /// How many evaluations failed, and why the last one of these did.
+    /// Number of failed evaluations, and the reason of the last one.
     pub fn failures(&self) -> (usize, Option<&str>) {
         let mut failures = self.evaluations.iter().filter_map(|one| one.gradients.as_ref().err());
         (failures.clone().count(), failures.next_back().map(String::as_str))

@@ -1,7 +1,7 @@
-//! Numbers of a scene, within ranges, with which a quantity of it is least, is largest, or reaches a goal, found by gradients.
+//! Numbers of a scene, within ranges, that minimize or maximize a quantity of it, or reach a goal, found by gradients.
 //!
 //! A [`SceneOptimizer`] is of one quantity, or of several with goals, and any numbers of a scene file. Each evaluation is a
-//! [`Gradient`](crate::gradient::Gradient), with the errors that it states; the search stops where these leave
+//! [`Gradient`](crate::gradient::Gradient), with its estimated errors; the search stops where these leave
 //! nothing to gain. An optimum of squares against measurements is a [`SceneFit`](crate::fit::SceneFit).
 
 mod answer;

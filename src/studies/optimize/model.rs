@@ -83,7 +83,7 @@ impl Model {
         }
     }
 
-    /// Goes on to the least value by all components that are between their ends, or on the way there to the first end, if there is one
+    /// Continues to the minimum over all components that are between their ends, or to the first end before it, if there is one
     /// such value.
     fn improve_inner(&self, slopes: &DVector<f64>, ends: &[[f64; 2]], step: &mut DVector<f64>) {
         let is_inner = |k: &usize| ends[*k][0] < step[*k] && step[*k] < ends[*k][1];

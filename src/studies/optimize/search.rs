@@ -1,9 +1,9 @@
 //! The least value of a function of numbers between 0 and 1, by its slopes and their errors.
 //!
-//! A trust region in the box: a quadratic [model](Model) is minimized within the box and a distance from the best point so far, and its promise is compared
-//! with what is found there (A. R. Conn, N. I. M. Gould and Ph. L. Toint, "Trust-Region Methods" (2000), chapter 12). A point at which nothing is found
-//! is a shorter step next time. There are as many slopes as a person names numbers, so that B is dense; the pure port of L-BFGS-B among the
-//! crates (`lbfgsb-rs-pure`) has no word for a point without a value, and steps until slopes are far below their errors.
+//! A trust region in the box: a quadratic [model](Model) is minimized within the box and a distance from the best point so far, and its prediction is compared
+//! with the value there (A. R. Conn, N. I. M. Gould and Ph. L. Toint, "Trust-Region Methods" (2000), chapter 12). A point without a value
+//! shortens the next step. Numbers are named by a user and therefore few, so that B is dense; the pure port of L-BFGS-B among the
+//! crates (`lbfgsb-rs-pure`) has no means for a point without a value, and steps until slopes are far below their errors.
 
 use std::fmt;
 
@@ -28,13 +28,13 @@ pub(super) struct Seen {
 /// The function at a point, none where it has no value there.
 pub(super) type Function<'a> = &'a mut dyn FnMut(&[f64]) -> Result<Option<Seen>, Error>;
 
-/// Why a search ended.
+/// Reason for the end of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Ending {
     /// All derivatives by numbers that may change are below their own errors.
     WithinError,
-    /// The next step would be below 1e-5 of each range, or gain less than 1e-9 of what was gained so far.
+    /// The next step would be below 1e-5 of each range, or gain less than 1e-9 of the gain so far.
     Settled,
     /// Steps of 1e-5 of the ranges lead to nothing better: the quantity has kinks or jumps there, or its derivatives mean little.
     NothingBetter,
@@ -80,7 +80,7 @@ impl fmt::Display for Ending {
 const FIRST: f64 = 0.2;
 /// Steps below this part of the ranges count as none.
 const NO_STEP: f64 = 1e-5;
-/// Steps that promise less than this part of what was gained so far are not made, unless it is squares that are to be 0: where a quantity is curved, it
+/// Steps with a predicted gain of less than this fraction of the gain so far are not made, unless the objective is a sum of squares: where a quantity is curved, it
 /// is the gain of the last 3e-5 of a way.
 const NO_GAIN: f64 = 1e-9;
 /// Most evaluations.

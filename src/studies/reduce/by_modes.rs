@@ -1,12 +1,12 @@
-//! Reduced models without a run of all unknowns: the first shapes are what the loads, free vibrations and their derivatives let
-//! expect, the others what runs by the model go through and leave over. Their error is the one that these runs tell.
+//! Reduced models without a run of all unknowns: the first shapes come from loads, free vibrations and their derivatives,
+//! the others from runs by the model and their residuals. Their error is estimated by these runs.
 //!
 //! First shapes (`dynamics/system/expected.rs`) are equilibria as the loads grow, displacements of each load
 //! by the tangents at rest, the lowest vibrations, as large as the loads make them, and modal derivatives of
 //! the ten largest, from second differences of the forces of cells; POD orders them by size. A run by the
 //! model keeps the displacements that would balance its residual (`Trajectory::lacking`), the largest of
-//! which are the next shapes. Two models in a row whose runs are near to each other end that, as a small
-//! error of a frequency grows with time, which no single state shows. Runs by the last one then stand for
+//! which are the next shapes. The search ends with two successive models whose runs are near to each other, as a small
+//! error of a frequency grows with time, which no single state shows. Runs by the last one then replace
 //! full ones.
 
 use std::ops::ControlFlow;
@@ -67,7 +67,7 @@ pub fn reduce_by_modes(
     let Seen { model: rich, runs } = enrichment.enriched()?;
     let mut tried = enrichment.tried;
 
-    // the smallest model that does what this one does, as told by both
+    // the smallest model as accurate as this one, by both estimates
     let left = training.within - rich.error;
     let within = if left > 0.0 { left } else { training.within };
     let training = Training { within, ..training.clone() };
@@ -75,7 +75,7 @@ pub fn reduce_by_modes(
     let to_told = |error: f64| error + rich.error;
     let told = |own: Tried| Tried { error: to_told(own.error), ..own };
     tried.extend(smaller.into_iter().map(told));
-    // what runs by it leave over is to tell all of its error
+    // residuals of its runs must show all of its error
     let all = to_told(model.error);
     let is_larger = model.error > 0.0 && model.error_per_imbalance > 0.0;
     model.error_per_imbalance *= if is_larger { all / model.error } else { 0.0 };
@@ -106,7 +106,7 @@ struct Seen {
     runs: Vec<(Trajectory, f64)>,
 }
 
-/// Models that become richer by what they lack.
+/// Models that are enriched by their missing displacements.
 struct Enrichment<'a> {
     training: &'a Training,
     kit: Kit<'a>,
@@ -150,7 +150,7 @@ impl Enrichment<'_> {
             for (number, count) in counts.iter_mut().enumerate() {
                 let own = lacking.iter().filter(|lacking| lacking.phase == number);
                 let own: Vec<Vec<f64>> = own.map(|lacking| lacking.displacement.clone()).collect();
-                // a run that has failed tells nothing: take more of what was expected
+                // a failed run has no information: use more of the expected shapes
                 if !own.is_empty() {
                     let added = next.saturating_sub(*count);
                     phases[number].grow(&mut equations[number], *count, own, added);
@@ -171,8 +171,8 @@ impl Enrichment<'_> {
         Ok(best)
     }
 
-    /// Runs all scenes by a model; none where one fails. Its error is what these runs tell, or twice their distance from those by the model
-    /// `before`, if that is more: small errors of a frequency, which no state tells, grow with time.
+    /// Runs all scenes by a model; none where one fails. Its error is the estimate of these runs, or twice their distance from those by the model
+    /// `before`, if that is more: small errors of a frequency, which no state shows, grow with time.
     fn run(
         &mut self,
         mut model: ReducedModel,
@@ -222,7 +222,7 @@ fn expected_phases(
     let at_rest: Vec<Vec<Vec<f64>>> = scenes.iter().map(at_rest).collect();
     let of_phase = |number: usize, equations: &mut Undeformed| {
         let mut vibrations = None;
-        // what one phase does another one undoes
+        // the motion of one phase is reversed by another one
         let mut motions = at_rest.concat();
         for (scene, at_rest) in scenes.iter().zip(&at_rest) {
             let farthest = at_rest.iter().map(|u| largest(u)).fold(0.0, f64::max);

@@ -1,6 +1,6 @@
-//! How far the motion of a reduced model is from that of all unknowns.
+//! Error of the motion of a reduced model relative to that of all unknowns.
 //!
-//! A model is checked with all runs, those that it was learned from included.
+//! A model is verified with all runs, including the training runs.
 
 use crate::dynamics::trajectory::{Sample, Trajectory};
 

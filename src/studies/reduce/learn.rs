@@ -23,7 +23,7 @@ pub(super) struct LearnedPhase {
     rows: usize,
     /// The columns of E.
     pub(super) lifts: Vec<Vec<f64>>,
-    /// Orthonormal in M: those that are always taken, and the others, of which those that belong together follow each other.
+    /// Orthonormal in M: those that are always used, and the others, of which those that belong together follow each other.
     shapes: Vec<Vec<f64>>,
     always: usize,
     together: usize,
@@ -40,7 +40,7 @@ pub(super) struct State {
     origin: Arc<Vec<f64>>,
     u: Vec<f64>,
     pub(super) v: Vec<f64>,
-    /// u - u_0 without what the constraints move, and that: E (b - b_0).
+    /// u - u_0 without the motion of the constraints, and that motion: E (b - b_0).
     own: Vec<f64>,
     moved: Vec<f64>,
 }
@@ -116,7 +116,7 @@ impl LearnedPhase {
         self.shapes.truncate(count);
         let found = beyond(&self.shapes, displacements, false, &mass);
         let mut new: Vec<Vec<f64>> = found.shapes.into_iter().take(added).collect();
-        // what is small beside what was removed has its round-off
+        // a remainder that is small relative to the removed part is round-off
         new.iter_mut().for_each(|shape| system.constrain(shape));
         let all: Vec<Vec<f64>> = self.shapes.drain(..).chain(new).collect();
         self.shapes = orthonormal(&all, &mass);
@@ -129,7 +129,7 @@ impl LearnedPhase {
         (self.always + others / self.together * self.together).min(self.shapes.len())
     }
 
-    /// Number of shapes that are always taken: all linear displacements, where nothing holds the body.
+    /// Number of shapes that are always used: all linear displacements, where nothing holds the body.
     pub(super) fn least(&self) -> usize {
         self.always
     }
@@ -221,7 +221,7 @@ impl Undeformed {
     }
 }
 
-/// Displacements (m) on the way to the equilibrium of phase `number` of a scene, as its loads grow; none where there is none.
+/// Displacements (m) along the path to the equilibrium of phase `number` of a scene, as its loads grow; none where there is none.
 pub(super) fn equilibria(scene: &Scene, number: usize) -> Vec<Vec<f64>> {
     let statics = Statics { load_steps: LOAD_STEPS, rtol: 1e-6, ..Statics::default() };
     let Ok(found) = scene.equilibrium_of(scene.phases()[number].name(), &statics) else {
@@ -232,7 +232,7 @@ pub(super) fn equilibria(scene: &Scene, number: usize) -> Vec<Vec<f64>> {
     ways.map(|way| way.map(|(u, first)| u - first).collect()).collect()
 }
 
-/// Steps of the loads on the way to an equilibrium.
+/// Steps of the loads along the path to an equilibrium.
 const LOAD_STEPS: usize = 8;
 
 /// The displacements (m) that are expected in phase `number` of a scene by what is linear and of second order, no larger than `most` (m) if
@@ -341,7 +341,7 @@ fn beyond(shapes: &[Vec<f64>], mut displacements: Vec<Vec<f64>>, turns: bool, ma
     pod(&displacements, mass)
 }
 
-/// Removes from `x` what orthonormal shapes have of it.
+/// Removes from `x` its projection onto orthonormal shapes.
 fn remove(shapes: &[Vec<f64>], mass: &dyn Fn(&[f64], &mut [f64]), x: &mut [f64]) {
     let mut momentum = vec![0.0; x.len()];
     mass(x, &mut momentum);

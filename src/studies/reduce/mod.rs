@@ -1,8 +1,8 @@
-//! Reduced models: a scene in a few unknowns, learned from runs of all of them, with the error that this makes.
+//! Reduced models: a scene in a few unknowns, learned from runs of all of them, with its error.
 //!
 //! The shapes are a proper orthogonal decomposition of the displacements in these runs, phase by phase (L. Sirovich,
 //! Quart. Appl. Math. 45 (1987) 561-571); of bodies that nothing holds they contain all linear displacements and, in the
-//! plane, each shape turned by a quarter: so the body may turn by any angle. The cells are found by energy-conserving
+//! plane, each shape rotated by a quarter turn: so the body may rotate by any angle. The cells are found by energy-conserving
 //! sampling and weighting (`scene/reduced_model.rs`).
 
 mod alike;
@@ -61,15 +61,15 @@ pub struct Training {
 /// A reduced model with all that were tried.
 #[derive(Debug, Clone)]
 pub struct Reduced {
-    /// The smallest model within what was wanted, or else the best one.
+    /// The smallest model within the requested error, or else the best one.
     pub model: ReducedModel,
-    /// Whether it is within what was wanted.
+    /// Whether it is within the requested error.
     pub is_within: bool,
     /// Models that were tried, from the smallest one.
     pub tried: Vec<Tried>,
     /// Time (s) that a full run takes, the mean of those that were checked with; none where there was none.
     pub full_seconds: Option<f64>,
-    /// Time (s) that all of it has taken.
+    /// Total time (s).
     pub training_seconds: f64,
     /// Unknowns and cells of the full model.
     pub full: [usize; 2],
@@ -85,7 +85,7 @@ pub struct Tried {
     /// Largest error of a displacement, relative to the largest displacement in all runs; infinite where a run failed. With no run
     /// of all unknowns it is the largest one to runs by the model before, or by a richer one.
     pub error: f64,
-    /// The error that the runs themselves told (the largest one).
+    /// The largest error estimated by the runs themselves.
     pub told: f64,
     /// Time (s) of a run, the mean of all that it was checked with; no number where all failed.
     pub seconds: f64,
@@ -94,8 +94,8 @@ pub struct Tried {
 /// Numbers of unknowns that are tried.
 const SIZES: [usize; 10] = [4, 6, 8, 12, 16, 24, 32, 48, 64, 96];
 
-/// Parts of the error that is wanted by which the work of the sampled cells may differ from that of all: at first, and where
-/// more shapes do not help at last.
+/// Fractions of the requested error by which the work of the sampled cells may differ from that of all: at first, and
+/// where more shapes no longer reduce the error.
 const OF_CELLS: [f64; 2] = [0.03, 1e-4];
 
 /// Part of an error to which another model has to come for more shapes to have helped.
@@ -104,11 +104,11 @@ const HELPED: f64 = 0.7;
 /// Multiple of the error with all cells up to which it is the shapes that are too few, and not the cells.
 const OF_SHAPES: f64 = 2.0;
 
-/// Learns reduced models of growing size, and returns the smallest one that is good enough. `observer` is told what is
-/// being done, in a few words, after each step of a run, and ends it all by [`ControlFlow::Break`].
+/// Learns reduced models of growing size, and returns the smallest one that is good enough. `observer` gets a short
+/// description of the current task after each step of a run, and ends it all by [`ControlFlow::Break`].
 ///
 /// # Errors
-/// No scene to learn from, scenes that differ in their bodies or phases, what a reduced model cannot have; a training run
+/// No scene to learn from, scenes that differ in their bodies or phases, unsupported features of reduced models; a training run
 /// that fails, or that the observer has ended.
 pub fn reduce(
     training: &Training,
@@ -136,7 +136,7 @@ pub fn reduce(
     })
 }
 
-/// The smallest model within what is wanted, or else the best one, and all that were tried: learned from the first of some runs, as many as
+/// The smallest model within the requested error, or else the best one, and all that were tried: learned from the first of some runs, as many as
 /// there are scenes, and checked with all of them.
 fn learn_from(
     training: &Training,
@@ -276,7 +276,7 @@ impl<'a> Kit<'a> {
     }
 }
 
-/// The models that were tried, from what was learned.
+/// The tried models, from the training data.
 struct Search<'a> {
     training: &'a Training,
     phases: &'a [LearnedPhase],
@@ -382,7 +382,7 @@ struct ModelChecks {
     tried: Tried,
     /// The check with the largest error.
     worst: usize,
-    /// Why a run failed, if one did.
+    /// Reason of a failed run, if there was one.
     problem: Option<Error>,
 }
 

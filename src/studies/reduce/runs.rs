@@ -19,11 +19,11 @@ pub(super) struct ByModel {
     pub(super) lengths: [f64; 2],
     /// Time (s) of a run, the mean of those that came to their end.
     pub(super) seconds: f64,
-    /// Why a run failed, if one did.
+    /// Reason of a failed run, if there was one.
     pub(super) problem: Option<Error>,
 }
 
-/// Runs scenes by a model, and has each one seen, with its number and time (s), none where it failed: as long as `see` goes on.
+/// Runs scenes by a model, and passes each one to `see`, with its number and time (s), none where it failed, until `see` ends it.
 ///
 /// # Errors
 /// A model of another scene; runs that the observer has ended.

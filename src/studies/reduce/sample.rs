@@ -1,4 +1,4 @@
-//! The cells that stand for all: weights that are not negative, with which they do the work of all cells along the shapes
+//! The sample of cells that represents all: non-negative weights, with which they do the work of all cells along the shapes
 //! in the states of the training runs.
 //!
 //! The work of each cell along the shapes in 60 states gives the rows of non-negative least squares
@@ -26,7 +26,7 @@ const LEAST: f64 = 0.01;
 /// Cells with weights that do the work of all to `tolerance`, where each phase has so many of its shapes, and what is sampled in it is
 /// given `by_cell`.
 ///
-/// The forces along a shape count as much as the shape moves, whatever its stiffness.
+/// The forces along a shape are weighted by its motion, not by its stiffness.
 pub(super) fn weights(
     by_cell: &[Option<&ByCell>],
     phases: &[LearnedPhase],

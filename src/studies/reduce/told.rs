@@ -18,7 +18,7 @@ impl Reduced {
         self.tried.iter().find(|tried| [tried.unknowns, tried.cells] == [unknowns, cells])
     }
 
-    /// From which run on the time that learning has taken is won back; none if the model is not faster.
+    /// Number of the run from which on the training time is recovered; none if the model is not faster.
     pub fn pays_from(&self) -> Option<f64> {
         pays_from(self.training_seconds, self.full_seconds? - self.chosen()?.seconds)
     }
@@ -115,7 +115,7 @@ impl Reduced {
     /// As [`Display`](fmt::Display), where no run of all unknowns was made.
     fn fmt_by_modes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [unknowns, cells] = self.full;
-        writeln!(f, "unknowns     cells      error       told    time (s)")?;
+        writeln!(f, "unknowns     cells      error  estimated    time (s)")?;
         for Tried { unknowns, cells, error, told: said, seconds } in &self.tried {
             let cells = if *cells == 0 { "exact".into() } else { cells.to_string() };
             let error = if error.is_finite() { percent(*error) } else { String::new() };
@@ -133,11 +133,11 @@ impl Reduced {
 }
 
 impl fmt::Display for Reduced {
-    /// A table of what was tried, and what was chosen.
+    /// A table of the tried models, and the choice.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [unknowns, cells] = self.full;
         let Some(full) = self.full_seconds else { return self.fmt_by_modes(f) };
-        writeln!(f, "unknowns     cells      error       told    time (s)  speed-up")?;
+        writeln!(f, "unknowns     cells      error  estimated    time (s)  speed-up")?;
         for Tried { unknowns, cells, error, told: said, seconds } in &self.tried {
             let cells = if *cells == 0 { "exact".into() } else { cells.to_string() };
             if error.is_infinite() {
@@ -174,7 +174,7 @@ impl fmt::Display for Reduced {
 }
 
 impl fmt::Display for Verified {
-    /// The error that was found, and the one that the run told.
+    /// The measured error, and the one that the run estimated.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { reduced: Tried { error, told: said, seconds, .. }, full_seconds } = *self;
         if error.is_infinite() {
@@ -185,7 +185,7 @@ impl fmt::Display for Verified {
         let [full, seconds] = [full_seconds, seconds].map(four_digits);
         write!(
             f,
-            "off by {error}, the run tells {said}; {seconds} s in place of {full} s, {faster} times the speed"
+            "off by {error}, the run estimates {said}; {seconds} s in place of {full} s, {faster} times the speed"
         )
     }
 }

@@ -23,7 +23,7 @@ const MOST_WITH_CORNERS: usize = 3;
 const INSIDE: usize = 3;
 /// Points inside the ranges for each key, without corners.
 const INSIDE_PER_KEY: usize = 4;
-/// Tables that say how a scene is run and what is read, not what happens.
+/// Tables of settings and readings, which do not change the motion.
 const NOT_OF_SCENES: [&str; 4] = ["solver", "statics", "output", "sensor"];
 /// Override for scenes with all unknowns: no reduced model.
 const UNREDUCED: &str = "solver.reduced=\"\"";
@@ -63,7 +63,7 @@ impl VariedKey {
         let table = self.key.split('.').next().unwrap_or_default();
         if NOT_OF_SCENES.contains(&table) {
             let help =
-                format!("[{table}] is no part of what happens: vary loads, pressures, signals");
+                format!("[{table}] does not change the motion: vary loads, pressures, signals");
             return Err(InputError::new("key that is varied", &self.key, help));
         }
         Ok(())

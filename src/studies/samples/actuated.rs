@@ -87,7 +87,7 @@ pub fn ring_springs(force: f64) -> Result<Scene, InputError> {
 }
 
 /// The ring of [`ring_springs`] jumps: A1 and A5 shrink with a force that grows to 1 N within 0.1 s,
-/// then everything is let go until 1 s.
+/// then everything is released until 1 s.
 ///
 /// # Errors
 /// None: it returns a `Result` as the other scenes do.
@@ -114,7 +114,7 @@ pub fn report_8() -> Result<Scene, InputError> {
 }
 
 /// A bending actuator: bellows over a stiff layer, clamped at one end (15 mm wide, plane stress, Green
-/// strain), whose rooms are blown up by 5 kPa at once; after 1 s the air is let out, until 2 s. `mesh`
+/// strain), whose chambers are inflated by 5 kPa at once; after 1 s the air is let out, until 2 s. `mesh`
 /// has the regions, nodes and walls of `scenes/meshes/bending-actuator.geo`.
 ///
 /// # Errors

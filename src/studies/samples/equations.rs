@@ -30,7 +30,7 @@ pub struct Reference {
     pub y: &'static [f64],
     /// Correct significant digits of each component.
     pub digits: u32,
-    /// Where the numbers come from.
+    /// Source of the numbers.
     pub source: &'static str,
 }
 
@@ -99,7 +99,7 @@ macro_rules! jacobians_from_entries {
     };
 }
 
-/// Implements what problems of a fixed number of unknowns have in common.
+/// Common implementation of problems with a fixed number of unknowns.
 macro_rules! of_unknowns {
     ($problem:ty, $n:literal) => {
         impl $problem {
@@ -109,7 +109,7 @@ macro_rules! of_unknowns {
                 Self { pattern: Self::pattern_of($n) }
             }
 
-            /// Where its Jacobian may be nonzero.
+            /// Pattern of its Jacobian.
             #[must_use]
             pub fn pattern(&self) -> &Pattern {
                 &self.pattern
@@ -253,7 +253,7 @@ impl Robertson {
         Self { pattern: Self::pattern_of(3) }
     }
 
-    /// Where the Jacobian of the ODE, and of the DAE, may be nonzero.
+    /// Patterns of the Jacobians of the ODE and of the DAE.
     #[must_use]
     pub fn pattern(&self) -> &Pattern {
         &self.pattern

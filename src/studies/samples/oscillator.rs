@@ -4,7 +4,7 @@ use faer::MatMut;
 
 use crate::integrators::ode::{Failure, Ode};
 
-/// y'' + d y' + y = 0 for (y, y'), let go at rest from y = 1.
+/// y'' + d y' + y = 0 for (y, y'), released at rest from y = 1.
 #[derive(Clone, Copy, Debug)]
 pub struct DampedOscillator {
     /// d, twice the damping ratio; below 2 it oscillates.

@@ -45,7 +45,7 @@ pub fn square_jump(nodes: usize) -> Result<Scene, InputError> {
 pub struct SquareJump {
     /// Nodes along a side, 4 at least. Default: 4 (Fig. 4.5); Fig. 4.6 has 10.
     pub nodes: usize,
-    /// How the square is divided. Default: triangles; Fig. 4.7 has rectangles.
+    /// Cells of the square. Default: triangles; Fig. 4.7 has rectangles.
     pub cells: Cells,
     /// Default: consistent.
     pub inertia: Inertia,

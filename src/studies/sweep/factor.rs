@@ -27,7 +27,7 @@ pub(super) enum Factor {
     Table { keys: Vec<String>, rows: Vec<Vec<SetValue>>, lines: Vec<usize> },
 }
 
-/// Where the points of a sample are.
+/// Distribution of the points of a sample.
 #[derive(Debug, Clone)]
 pub(super) enum Places {
     /// Key by key.
@@ -71,7 +71,7 @@ impl Factor {
         one.into_iter().chain(several.into_iter().flatten()).map(String::as_str)
     }
 
-    /// How many points it has.
+    /// Number of its points.
     pub(super) fn len(&self) -> usize {
         match self {
             Self::List { values, .. } => values.len(),
@@ -234,7 +234,7 @@ fn sample(
     Ok(Some(Factor::Sample { keys, ranges, places, count }))
 }
 
-/// Where the table of a study is.
+/// Path of the table of a study.
 pub(super) fn table_path(file: &StudyFile) -> PathBuf {
     let name = file.table.as_ref().map_or("", |table| &table.text[..]);
     file.path.parent().map_or_else(|| name.into(), |parent| parent.join(name))

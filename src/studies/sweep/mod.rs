@@ -1,4 +1,4 @@
-//! A scene for many values of its keys: which ones, the run of each, and what came out of them.
+//! A scene for many values of its keys: the values, the run of each, and the results.
 
 mod condition;
 mod factor;

@@ -1,6 +1,6 @@
 //! The outcome of a point: a motion, or an equilibrium.
 //!
-//! A run is sampled as the scene asks, so that its warnings are those of `pliant run`; quantities are
+//! A run is sampled as in the scene, so that its warnings are those of `pliant run`; quantities are
 //! additional sensors, removed before an output is kept. A run has one core, by a pool of one thread. Reading
 //! a scene and building its body is not shared between runs: 4 to 8 % of a run (`docs/notes/studies.md`).
 
@@ -36,7 +36,7 @@ impl Outcome {
         }
     }
 
-    /// Why it failed.
+    /// Reason for its failure.
     pub(super) fn failure(&self) -> Option<String> {
         match self {
             Self::Motion(motion) => motion.as_ref().err().map(ToString::to_string),
@@ -54,7 +54,7 @@ impl Outcome {
         let trajectory = self.trajectory();
         let last = trajectory.last();
         match self {
-            // by arc length samples are spread over the phase whatever the load
+            // by arc length samples are spread over the phase, independent of the load
             Self::Equilibrium(Err(failure)) => {
                 failure.fraction * trajectory.scene().phases()[last.phase].end()
             }
@@ -71,7 +71,7 @@ impl Outcome {
         }
     }
 
-    /// Names of what makes it doubtful.
+    /// Names of the indicators in doubt.
     pub(super) fn warnings(&self) -> Vec<String> {
         let named = self.trajectory().report().named_warnings();
         let mut names: Vec<String> = named.into_iter().map(|(name, _)| name.into()).collect();
@@ -200,7 +200,7 @@ fn sampling(file: &SceneFile, quantities: &[Quantity], is_verified: bool) -> Sam
     }
 }
 
-/// The column of what is read for quantity `at`.
+/// The column of quantity `at`.
 fn column(motion: &Trajectory, at: usize) -> Option<usize> {
     let name = format!("{SENSOR}{at}");
     // a vector on a line has one component, which the name of its column has, too

@@ -1,4 +1,4 @@
-//! The points of a study: which values the keys have in each run.
+//! The points of a study: the values of the keys in each run.
 //!
 //! A plan is a product of factors from which any point is computed by its number: a million points take no
 //! memory. An id is a hash of sorted keys and values in one form, independent of the order of keys, of how
@@ -27,7 +27,7 @@ pub struct Plan {
 /// One point: the values of all keys that are varied.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// A hash of the keys and their values, whatever order they have and however they are written, in 16 digits.
+    /// A hash of the keys and their values, independent of their order and notation, in 16 digits.
     pub id: String,
     /// The keys.
     pub keys: Arc<[String]>,
@@ -76,7 +76,7 @@ impl Plan {
         &self.keys
     }
 
-    /// A point, by its number from 0; numbers beyond the last begin anew.
+    /// A point, by its number from 0; numbers beyond the last wrap around.
     pub fn point(&self, number: usize) -> Point {
         let mut rest = number;
         let mut parts: Vec<Vec<SetValue>> = Vec::with_capacity(self.factors.len());
@@ -122,7 +122,7 @@ impl Point {
     }
 }
 
-/// A hash of the values, in which neither order nor the way in which they are written counts.
+/// A hash of the values, independent of their order and notation.
 fn id(keys: &[String], values: &[SetValue]) -> String {
     let pairs = keys.iter().zip(values);
     let mut lines: Vec<String> =

@@ -130,7 +130,7 @@ mod tests {
         let other = |seed, axis| latin_hypercube(1000, seed, axis);
         assert_eq!(places, other(3, "young"));
         assert!(places != other(4, "young") && places != other(3, "density"));
-        // two axes are not correlated: 1/sqrt(1000) is what chance gives
+        // two axes are not correlated: random points have 1/sqrt(1000)
         let product = |(a, b): (&f64, &f64)| (a - 0.5) * (b - 0.5);
         let covariance: f64 = places.iter().zip(&other(3, "density")).map(product).sum();
         assert!(covariance.abs() * 12.0 / 1000.0 < 0.1, "{covariance}");

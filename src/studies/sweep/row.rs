@@ -5,7 +5,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// One run: what was set, what was found, whether it can be trusted, and what it cost.
+/// One run: its values, results, reliability and cost.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
@@ -20,9 +20,9 @@ pub struct Row {
     /// Names of the warnings: of the indicators that are beyond their limits, and `integrator`, `energy-balance`,
     /// `accuracy`, of equilibria `unstable`.
     pub warnings: Vec<String>,
-    /// Why the run failed.
+    /// Reason for the failure of the run.
     pub failure: Option<String>,
-    /// Relative difference of the last two runs, if an accuracy was asked for.
+    /// Relative difference of the last two runs, if an accuracy was requested.
     pub difference: Option<f64>,
     /// Time reached (s); in an equilibrium the end of its phase, or that part of it to which the load was brought on.
     pub reached: Option<f64>,

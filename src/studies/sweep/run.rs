@@ -51,7 +51,7 @@ pub struct Sweep {
 pub struct PointRun {
     /// Its row.
     pub row: Row,
-    /// The scene, and what it asks for; none if it cannot be read.
+    /// The scene, and its requests; none if it cannot be read.
     pub file: Option<SceneFile>,
     /// Its outcome; none if the run did not begin.
     pub outcome: Option<Outcome>,
@@ -223,7 +223,7 @@ impl Sweep {
         }
     }
 
-    /// Runs a point, or finds its equilibrium if the study says so. `observer` is called after each step of a run, and stops it by
+    /// Runs a point, or finds its equilibrium if that is the kind of study. `observer` is called after each step of a run, and stops it by
     /// [`ControlFlow::Break`]: then there is no result. A failed run, or one that cannot begin, is a row, too.
     pub fn run(
         &self,

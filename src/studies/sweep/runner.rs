@@ -31,10 +31,10 @@ pub trait Watch: Sync {
     /// An error that ends the study.
     fn ran(&self, run: &PointRun) -> Result<(), Error>;
 
-    /// Called when a row is there, whoever has computed it.
+    /// Called when a row is available, from any process.
     fn has(&self, row: &Row);
 
-    /// Whether to go on; asked after each step.
+    /// Whether to continue; called after each step.
     fn goes_on(&self) -> bool {
         true
     }
@@ -51,14 +51,14 @@ impl<'a> Runner<'a> {
         Self { sweep, store, cores: thread::available_parallelism().map_or(1, Into::into) }
     }
 
-    /// How many points are run at once. Default: as many as there are cores.
+    /// Number of points that are run at once. Default: the number of cores.
     #[must_use]
     pub fn cores(mut self, count: usize) -> Self {
         self.cores = count;
         self
     }
 
-    /// How many points are run at once: no more than fit into memory, as far as that can be known beforehand from
+    /// Number of points that are run at once: no more than fit into memory, as estimated beforehand from
     /// the first and the last point.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 //!
 //! The table needs no lock and no process in charge, as it is gathered from the files. A process that
 //! computes a row locks a file with its id; locks end with their process, so that a kill leaves nothing to be
-//! cleared. On file systems without locks a row may be computed twice, and is there once. The identity of a
+//! cleared. On file systems without locks a row may be computed twice, and is stored once. The identity of a
 //! study is the scene as it is read, not its text, so that comments may change, and the names of the keys,
 //! not their values, so that values can be added.
 
@@ -49,7 +49,7 @@ pub struct Claim {
 #[serde(deny_unknown_fields)]
 struct Identity {
     version: String,
-    /// The scene with what is set, and its solver or how its equilibrium is sought, as a hash.
+    /// The scene with the values set in it, and its solver or the options of its equilibrium, as a hash.
     scene: String,
     set: Vec<String>,
     keys: Vec<String>,
@@ -67,7 +67,7 @@ impl Store {
     /// The directory at `path` for the rows of a study; nothing is written yet.
     ///
     /// # Errors
-    /// A directory that holds another study, with what differs; a scene that cannot be read.
+    /// A directory that holds another study, with the differences; a scene that cannot be read.
     pub fn new(path: impl Into<PathBuf>, sweep: &Sweep) -> Result<Self, Error> {
         let store = Self { path: path.into(), identity: Identity::of(sweep)? };
         let study = store.path.join(STUDY);
@@ -107,7 +107,7 @@ impl Store {
         write_file(&study, |file| writeln!(file, "{document:#}"))
     }
 
-    /// Where it is.
+    /// Its path.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -14,7 +14,7 @@ use crate::io::scene_file::SetValue;
 pub struct Results {
     /// The rows.
     pub rows: Vec<Row>,
-    /// How many points have none yet.
+    /// Number of points without one.
     pub missing: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Which line is the fastest, accuracy by accuracy.
+//! The fastest line for each accuracy.
 //!
 //! An accuracy counts from the last point of a line that misses it, and interpolates from there: a loose
 //! tolerance that is accurate by luck, as happens with all methods now and then, does not count.

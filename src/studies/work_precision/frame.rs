@@ -8,7 +8,7 @@ pub(crate) const WORST: f64 = 10.0;
 /// Labels on an axis, at most.
 const LABELS: usize = 30;
 
-/// Axes with room for all `times` (s) and `errors`, which are positive; one of each at least.
+/// Axes that include all `times` (s) and `errors`, which are positive; one of each at least.
 pub(crate) fn axes(
     times: impl Iterator<Item = f64>,
     errors: impl Iterator<Item = f64>,

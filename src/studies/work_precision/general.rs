@@ -77,7 +77,7 @@ pub struct Goal<'a> {
     pub limit: Duration,
 }
 
-/// An end state and what it cost.
+/// An end state and its cost.
 #[derive(Debug, Clone, Default)]
 pub struct EndState {
     /// The state.

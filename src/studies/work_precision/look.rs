@@ -1,4 +1,4 @@
-//! A first look at a scene: a coarse run, and what it shows about the model.
+//! A first look at a scene: a coarse run, and its conclusions about the model.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -92,7 +92,7 @@ impl Look {
         self.until
     }
 
-    /// Why the run ended before the scene, if it did.
+    /// Reason for the end of the run before that of the scene, if it ended early.
     pub fn cause(&self) -> Option<&str> {
         self.cause.as_deref()
     }

@@ -1,4 +1,4 @@
-//! By how much a quantity of an equilibrium is off because of the mesh: dual-weighted residuals.
+//! Error of a quantity of an equilibrium by the mesh: dual-weighted residuals.
 //!
 //! Displacements are transferred to quadratic cells (or halved ones), and the effect of their unbalanced
 //! forces on the quantity follows from the dual solution: one factorization
@@ -6,7 +6,7 @@
 //! with the derivative of the reading (`dynamics/simulate/derivative.rs`). Loads on nodes and readings of
 //! nodes stay on the original nodes. The number is also the first step of Newton's method; the dual solution
 //! gives the cells that it comes from, a second residual after that step the remainder. The equilibrium on
-//! the richer mesh is as sharp and takes 12 to 15 factorizations (`docs/notes/studies.md`).
+//! the richer mesh is as accurate and takes 12 to 15 factorizations (`docs/notes/studies.md`).
 
 use std::time::Instant;
 

@@ -1,4 +1,4 @@
-//! Speed charted against accuracy.
+//! Charts of speed against accuracy.
 //!
 //! A [`Study`] solves a [`Problem`] in several ways, its [`Line`]s, each at several [`Point`]s (tolerances,
 //! or meshes), measures the time and the error of each, and gives [`Findings`]: a table of all runs, a
@@ -19,7 +19,7 @@
 //! # Ok::<(), pliant::Error>(())
 //! ```
 //!
-//! **Error.** That of a scene is the distance of its nodes from where the reference has them, root mean
+//! **Error.** That of a scene is the distance of its nodes from their positions in the reference, root mean
 //! square over nodes and over 101 times from start to end, relative to the motion: the root mean square
 //! displacement of the same nodes at the same times in the reference. One number thus covers the whole motion
 //! and not one instant, and means the same for large and small bodies. Motion below a millionth of the body's
@@ -35,12 +35,12 @@
 //! **Time.** Wall-clock time of the whole solution, from the call to the end of the last phase, without
 //! samples: the median of some repetitions (a run of more than half a second is run once). Runs never
 //! overlap. Before and after each of them a fixed piece of arithmetic is timed, the yardstick: where it takes
-//! longer than it did at its best, the machine was busy with other things, and the row says by how much. Rows
+//! longer than its least time, the machine was busy with other things, and the row has the ratio. Rows
 //! have processor times, too, which are disturbed less.
 //!
-//! **Failures** are results. A run that gives up, or that is given up because it takes more than twenty times
+//! **Failures** are results. A run that fails, or that is abandoned because it takes more than twenty times
 //! as long as the fastest at the same tolerance, is a row with its reason. Each row has the error of the
-//! energy balance, which shows most answers that are wrong and do not say so.
+//! energy balance, which reveals most wrong answers that cause no failure.
 
 mod chart;
 pub(super) mod fastest;
@@ -76,7 +76,7 @@ use std::time::Duration;
 
 use crate::dynamics::error::Error;
 
-/// Why a run gave no result.
+/// Reason for a missing result of a run.
 pub type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 /// Problem that is solved in several ways.
@@ -101,13 +101,13 @@ pub trait Problem {
     /// Solves the problem and compares with the reference.
     ///
     /// # Errors
-    /// Why there is no solution; that it took more processor time than `limit`, for one.
+    /// Reason for a missing solution, such as more processor time than `limit`.
     fn measure(&mut self, line: usize, point: usize, limit: Duration) -> Result<Measured, Failed>;
 
     /// Solves the problem again and returns the time (s) that it took.
     ///
     /// # Errors
-    /// Why there is no solution.
+    /// Reason for a missing solution.
     fn time(&mut self, line: usize, point: usize) -> Result<f64, Failed>;
 }
 
@@ -122,7 +122,7 @@ pub struct Line {
     pub points: Vec<Point>,
 }
 
-/// How fine a run was: a point on a line.
+/// Fineness of a run: a point on a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     /// Name, unique within the line: the tolerance or the mesh.

@@ -1,4 +1,4 @@
-//! Quantities of interest of a motion, and what their errors are relative to.
+//! Quantities of interest of a motion, and the scales of their errors.
 //!
 //! A quantity is the whole motion, or a reading of a sensor over time, or a number that follows from it.
 //! Charts, verified runs and the adviser measure by the same definitions.
@@ -29,7 +29,7 @@ use crate::scene::timeline::Scene;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Quantity {
     reading: Option<Reading>,
-    /// How it was named.
+    /// Its name, as given.
     name: String,
     part: Part,
 }
@@ -171,7 +171,7 @@ impl Quantity {
         InputError::new("quantity of an equilibrium", format!("\"{self}\""), help)
     }
 
-    /// Its value in an equilibrium, to be compared with what is [seen](Self::seen) at the end of a motion.
+    /// Its value in an equilibrium, to be compared with that [seen](Self::seen) at the end of a motion.
     ///
     /// # Errors
     /// As [`of_equilibrium`](Self::of_equilibrium).
@@ -188,7 +188,7 @@ impl Quantity {
         self.part == Part::End
     }
 
-    /// Reads it in addition to what `sampling` reads.
+    /// Reads it in addition to the readings of `sampling`.
     pub(crate) fn read_by(&self, sampling: Sampling) -> Sampling {
         match &self.reading {
             Some(reading) if self.is_peak() => {
@@ -199,7 +199,7 @@ impl Quantity {
         }
     }
 
-    /// How many numbers a sample has of it, after those of other sensors; 0 for the whole motion.
+    /// Count of its numbers in a sample, after those of other sensors; 0 for the whole motion.
     pub(crate) fn columns(&self, scene: &Scene) -> Result<usize, InputError> {
         match &self.reading {
             Some(_) => self.read_by(Sampling::phase_ends()).columns(scene).map(|own| own.len()),

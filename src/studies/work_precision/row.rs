@@ -1,4 +1,4 @@
-//! One run of a study, and the file that keeps them.
+//! One run of a study, and the file of these rows.
 //!
 //! A row is the same run if the scene is the same: a hash of its `Debug` text and of its accelerations at a
 //! few times of each phase, as functions of time have no text.
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::dynamics::error::Error;
 use crate::io::output::write_file;
 
-/// One run: what was solved, how, what it found and what it cost. Also one row of the CSV file,
+/// One run: problem, method, result and cost. Also one row of the CSV file,
 /// whose columns have the names of the fields.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -40,7 +40,7 @@ pub struct Row {
     pub spread: f64,
     /// Number of repetitions.
     pub repetitions: usize,
-    /// How many times slower than at its best the machine was.
+    /// Slow-down of the machine, relative to its best.
     pub slowdown: f64,
     /// Unknowns.
     pub states: Option<usize>,
@@ -52,7 +52,7 @@ pub struct Row {
     pub factorizations: Option<usize>,
     /// Largest change of the energy balance, relative to the largest sum of the energies.
     pub energy_error: Option<f64>,
-    /// Why the run failed.
+    /// Reason for the failure of the run.
     pub failure: Option<String>,
     /// Identifies the run; [`Problem::fingerprint`](super::Problem::fingerprint).
     pub fingerprint: String,

@@ -55,7 +55,7 @@ impl<'a> Study<'a> {
         Self { problem, repetitions: 3, patience: 20.0, limit: 120.0, file: None }
     }
 
-    /// How often each run is repeated to be timed. Default: 3.
+    /// Number of repetitions of each run for timing. Default: 3.
     #[must_use]
     pub fn repetitions(mut self, count: usize) -> Self {
         self.repetitions = count;
@@ -87,7 +87,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Runs what is not kept yet. Calls `observer` before each run.
+    /// Runs all points without a stored row. Calls `observer` before each run.
     ///
     /// # Errors
     /// Bad input; [`Error::Reference`] if there is nothing to compare with; [`Error::Read`] and
@@ -148,7 +148,7 @@ struct PlannedRun {
     row: Row,
 }
 
-/// All runs, the rough points of all lines first, with what is known of their rows.
+/// All runs, the rough points of all lines first, with their rows if known.
 fn all_runs(problem: &dyn Problem) -> Vec<PlannedRun> {
     let lines = problem.lines();
     let longest = lines.iter().map(|line| line.points.len()).max().unwrap_or(0);

@@ -15,7 +15,7 @@ use crate::scene::timeline::Scene;
 /// strain model or other cells, on finer and finer meshes.
 ///
 /// All ways are compared with the exact motion of the scene given to [`new`](Self::new). Where a line
-/// solves another scene, its error thus counts what the other scene does differently, too.
+/// solves another scene, its error thus includes the difference of the scenes.
 #[derive(Debug)]
 pub struct Scenes {
     title: String,

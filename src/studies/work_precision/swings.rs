@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::base::root::crosses;
 
-/// Swings below this fraction of the largest one are ripples, or what a vibration has faded to.
+/// Swings below this fraction of the largest one are ripples, or the remainder of a vibration.
 const RIPPLE: f64 = 0.05;
 /// Rounds in which a crossing is found on a parabola, each of which leaves a small fraction of the error.
 const ROUNDS: usize = 4;

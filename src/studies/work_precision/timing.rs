@@ -22,7 +22,7 @@ impl Yardstick {
         Self { least: (0..5).map(|_| arithmetic()).fold(f64::INFINITY, f64::min) }
     }
 
-    /// How many times slower than at its best the machine is now.
+    /// Present slow-down of the machine, relative to its best.
     pub(crate) fn slowdown(&mut self) -> f64 {
         let seconds = arithmetic();
         self.least = self.least.min(seconds);
@@ -41,7 +41,7 @@ fn arithmetic() -> f64 {
     clock.elapsed().as_secs_f64()
 }
 
-/// How long a run took (s).
+/// Duration of a run (s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Time {
     /// Wall-clock time.
@@ -87,7 +87,7 @@ impl Budget {
         processor_time() - self.start
     }
 
-    /// Whether too much was spent. To be asked after each step; reads the clock only now and then, as steps
+    /// Whether the budget is spent. To be called after each step; reads the clock only now and then, as steps
     /// may be shorter than a reading.
     pub(crate) fn is_spent(&mut self) -> bool {
         self.asked += 1;

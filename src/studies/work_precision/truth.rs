@@ -17,7 +17,7 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::scene::settings::{Method, Settings};
 use crate::scene::timeline::Scene;
 
-/// Methods of different families, each at its highest order: what two of them agree on is right.
+/// Methods of different families, each at its highest order: digits on which two of them agree are trusted.
 const METHODS: [(Method, Option<u32>); 4] = [
     (Method::CvodeAdams, None),
     (Method::CvodeBdf, None),
@@ -59,7 +59,7 @@ impl Probe {
         Ok((self.seen(&trajectory), trajectory))
     }
 
-    /// When a run has to be sampled, and what it has to read.
+    /// Required sampling of a run, and its readings.
     pub(crate) fn sampling(&self) -> Sampling {
         self.quantity.read_by(Sampling::at(self.times.clone()))
     }

@@ -1,7 +1,7 @@
-//! A motion with its error: runs with tighter and tighter tolerances, until two agree.
+//! A motion with its error: runs with successively tighter tolerances, until two agree.
 //!
 //! Tolerances fall by ten until two runs agree, contact events located. Where stability bounds the steps a
-//! tighter tolerance changes nothing, and two runs would agree for that reason alone: if a run took less than
+//! tighter tolerance changes nothing, and two runs would agree for that reason only: if a run took less than
 //! 1.3 times the steps of the one before, steps of the next are bounded by half of their mean. True errors
 //! beside the reported ones are in `docs/notes/studies.md`.
 
@@ -49,7 +49,7 @@ pub struct Verification<'a> {
     last: Option<TightenedRun>,
 }
 
-/// A run, and what was seen in it.
+/// A run, and its observed quantity.
 #[derive(Debug)]
 struct TightenedRun {
     settings: Settings,
@@ -86,7 +86,7 @@ impl<'a> Verification<'a> {
         }
     }
 
-    /// A verification `within` an accuracy of what a scene file says: its scene, settings, sampling (a hundred samples
+    /// A verification `within` an accuracy of the contents of a scene file: its scene, settings, sampling (a hundred samples
     /// if it requests none) and the quantity that it names, by default the whole motion.
     ///
     /// # Errors
@@ -101,7 +101,7 @@ impl<'a> Verification<'a> {
             .quantity(Quantity::named(quantity, scene, &output.sensors)?))
     }
 
-    /// How the scene is integrated; `rtol` does not count. Contact events are located, unless `settings` have
+    /// Settings of the scene; `rtol` is ignored. Contact events are located, unless `settings` have
     /// them stepped over. Default: [`Settings::default`].
     #[must_use]
     pub fn settings(mut self, settings: Settings) -> Self {
@@ -141,7 +141,7 @@ impl<'a> Verification<'a> {
             Some(last) => self.tighter(last),
         };
         let mut simulation = self.scene.start(&settings)?;
-        // at other times than the run before: what falls between them in both is the same in both
+        // at other times than the run before: events between samples in both are the same in both
         if self.runs % 2 == 1 {
             simulation.look_more_often(2.0);
         }

@@ -53,7 +53,7 @@ fn edges_of(matrices: &Matrices, rows: &[ConstraintRow], dimension: usize) -> Ed
     edges.retained(&is_kept)
 }
 
-/// Solutions with M and stiff springs between the pieces, of the step parameter 1 ms, in which pieces turn by 0.05 rad. Where rounds go on to 1e-11, motions
+/// Solutions with M and stiff springs between the pieces, of the step parameter 1 ms, in which pieces turn by 0.05 rad. Where refinement continues to 1e-11, motions
 /// agree to about that (7e-12 was measured), and multipliers, as forces of springs of 1e4 times the masses, to 1e4 times as much (1e-8). Where they
 /// end at 1e-5, as for Newton's iteration, that is what motions have.
 #[test]

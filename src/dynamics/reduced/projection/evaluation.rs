@@ -51,7 +51,7 @@ impl Projection {
         }
         at.carried = [nodal.carried_heat + relaxed, nodal.carried_power + brought];
 
-        // what constant matrices do, and what is steady
+        // forces of constant matrices, and steady ones
         at.applied.copy_from_slice(&constant.steady[1]);
         times(&constant.damping, rates, |i, sum| at.dissipative[i] = -sum);
         times(&constant.stiffness, z, |i, sum| {
@@ -104,7 +104,7 @@ impl Projection {
         }
     }
 
-    /// Adds to q'' what `forces` (N) on all nodes do along the shapes.
+    /// Adds the projection of `forces` (N) on all nodes to q''.
     pub(crate) fn push(&mut self, forces: &[f64]) {
         let mut along = vec![0.0; self.shapes.count()];
         self.shapes.add_projected(forces, &mut along);

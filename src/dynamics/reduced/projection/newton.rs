@@ -97,7 +97,7 @@ impl Projection {
         for i in 0..free {
             dissipated += xv[i] * dot(&damping[i * s..][..free], xv);
         }
-        // the change of q'', which moves what moves the constraints
+        // the change of q'', by the motion of the constraints
         let change = rv.iter().zip(&*xv).map(|(r, x)| (x - r) / gamma);
         right.iter_mut().zip(change).for_each(|(right, change)| *right = change);
         let mut supplied = dot(&applied[..free], xv);

@@ -1,4 +1,4 @@
-//! The saddle-point system of statics and its dual, with the tangent as it is, symmetric or not: the effect
+//! The saddle-point system of statics and its dual, with the full tangent, symmetric or not: the effect
 //! of unbalanced forces on the equilibrium, and on a quantity of it.
 
 use super::AtRest;

@@ -1,4 +1,4 @@
-//! Fields at nodes: what the cells around a node give there, each extrapolated from its strain points, in the
+//! Fields at nodes: means of the values of adjacent cells, each extrapolated from its strain points, in the
 //! mean weighted by the volumes of the cells (Hinton and Campbell 1974; Hughes, *The Finite Element Method*,
 //! section 4.10).
 //!

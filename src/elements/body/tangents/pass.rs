@@ -32,7 +32,7 @@ pub(super) struct Pass<
     pub(super) slope: P,
 }
 
-/// The tangents of several cells. Blocks of symmetric ones below the diagonal are left out.
+/// The tangents of several cells. Blocks of symmetric ones below the diagonal are omitted.
 type OfCells<const N: usize, const D: usize> = [[Block<Packed, D>; N]; N];
 
 impl<

@@ -1,4 +1,4 @@
-//! The law of a fibre: an exponential of its strain where it is stretched, or a pull of its own.
+//! The law of a fibre: an exponential of its strain in tension, or an active stress.
 
 use crate::base::tensor::{Matrix, Real};
 use crate::elements::material::law::{Blocks, ElasticLaw};
@@ -51,7 +51,7 @@ impl Fibre {
         [energy, young * strain * growth, young * growth * (1.0 + 2.0 * exponent)]
     }
 
-    /// k2; one that pulls by itself has no limit of stretch.
+    /// k2; an active one has no limit of stretch.
     #[inline(always)]
     fn stiffening(&self) -> f64 {
         match *self {

@@ -1,4 +1,4 @@
-//! Hill's law of muscles: how the stress of active fibres depends on their length and on its rate.
+//! Hill's law of muscles: the stress of active fibres as a function of their length and its rate.
 
 use crate::base::input::{InputError, positive};
 

@@ -271,7 +271,7 @@ impl Maxwell {
     pub(crate) fn step<const M: usize>(&self, gamma: f64, at: &Sprung) -> Step {
         let slopes = self.slopes::<M>(at);
         let matrix = Matrix6::identity() - slopes.rate[1] * gamma;
-        // what has no inverse has no step either: numbers that are none tell the integrator so
+        // a singular matrix has no step: NaN reports it to the integrator
         let solved = matrix.try_inverse().unwrap_or_else(|| Matrix6::repeat(f64::NAN));
         Step { slopes, gamma, solved }
     }

@@ -35,7 +35,7 @@ pub(crate) use viscous::ViscousLaw;
 
 use super::hooke::{Hooke, Lame, Plane};
 
-/// How the strain of a body follows from its displacements, and with it the elastic law.
+/// Strain measure of a body, as a function of its displacements, and with it the elastic law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Strain {
     /// Cauchy's small strain: force -K u, linear. Not invariant to rotation: a body that turns by
@@ -46,7 +46,7 @@ pub enum Strain {
     Green,
 }
 
-/// How the viscous force of a body follows from its velocities.
+/// Viscous force of a body as a function of its velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Viscosity {
@@ -57,7 +57,7 @@ pub enum Viscosity {
     ///
     /// Beside Hooke's law for Green's strain it is that law, with viscous moduli, for the rate of Green's strain: S = lambda tr(E')
     /// I + 2 mu E' is second Piola stress. Beside all other laws it is a Newtonian fluid: lambda tr(d) I + 2 mu d is Kirchhoff
-    /// stress, with the rate of deformation d = sym(F' F^-1). A motion that keeps the volume does not feel lambda there, and a bar
+    /// stress, with the rate of deformation d = sym(F' F^-1). A motion that keeps the volume is independent of lambda there, and a bar
     /// of rubber at the stretch l resists with 3 mu l'/l. From a Poisson's ratio of 0.45 on the bulk viscosity lambda + 2 mu / 3 of
     /// solids and of plane strain is that of 0.45, and in cells that grow it is 0.
     Objective,
@@ -118,7 +118,7 @@ impl Elastic {
     }
 }
 
-/// Evaluates an expression with the law that an [`Elastic`] holds, compiled for each law by itself.
+/// Evaluates an expression with the law that an [`Elastic`] holds, compiled separately for each law.
 macro_rules! with_law {
     ($elastic:expr, $law:ident => $expression:expr) => {
         match $elastic {

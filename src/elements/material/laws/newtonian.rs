@@ -10,7 +10,7 @@ use crate::elements::material::hooke::{Hooke, Lame};
 use crate::elements::material::law::{Block, Blocks};
 
 /// The Kirchhoff stress J sigma = lambda tr(d) I + 2 mu d with the rate of deformation d = sym(F' F^-1), whose trace is J'/J: a
-/// motion that keeps the volume does not feel lambda, however large it and the strain are. The heat lambda tr(d)^2 + 2 mu d : d is
+/// motion that keeps the volume is independent of lambda, for any size of it and of the strain. The heat lambda tr(d)^2 + 2 mu d : d is
 /// never below 0 while lambda + 2 mu / 3 is not (C. Truesdell, W. Noll, *The Non-Linear Field Theories of Mechanics*, section 119).
 ///
 /// In the coordinates of a cell, which need not fill space, with A = C^-1: P = F S, S = lambda tr(A E') A + 2 mu A E' A.

@@ -1,7 +1,7 @@
 //! Which law of objective viscosity a cell has.
 //!
 //! The bulk viscosity of the fluid is bounded by that of a Poisson's ratio of 0.45: changes of volume that
-//! are not elastic, and laws that keep the volume to first order alone (corotated), would feel it. That takes
+//! are not elastic, and laws that keep the volume to first order only (corotated), would depend on it. That takes
 //! 0.84 % at most from the viscosity of a bar at small strains, nothing up to nu = 0.45. Cells that are free
 //! to change their thickness keep lambda, reduced as in elasticity, which bounds it by 2 mu. The derivative
 //! of objective viscosity by u is not symmetric: tangents are exact, and the Newton matrix has their
@@ -35,7 +35,7 @@ impl ObjectiveViscosity {
         let hooke = Hooke::new(material.viscous(), dimension, plane);
         match elastic {
             Elastic::StVenantKirchhoff(_) => Self::Hookean(HookeanViscosity(hooke)),
-            // a free thickness follows the motion, whatever the bulk viscosity is
+            // a free thickness follows the motion with any bulk viscosity
             _ if hooke.is_free_across(dimension) => Self::Newtonian(NewtonianViscosity(hooke)),
             _ => {
                 let lame = material.bounded(material.viscosity);
@@ -44,8 +44,8 @@ impl ObjectiveViscosity {
         }
     }
 
-    /// The same of cells of `dimension` that grow: a Newtonian fluid without bulk viscosity, which growth alike in all
-    /// directions does not feel.
+    /// The same of cells of `dimension` that grow: a Newtonian fluid without bulk viscosity, in which isotropic
+    /// growth causes no stress.
     pub(crate) fn of_growing(&self, dimension: usize) -> Self {
         let hooke = self.hooke();
         let lame = match hooke.is_free_across(dimension) {

@@ -78,7 +78,7 @@ impl fmt::Debug for OwnEnergy {
 /// Logarithms of stretches below which W follows from its slopes, whose error is of the seventh order.
 const SMALL: f64 = 0.01;
 
-/// How far the shear modulus of an energy may be from that of the material.
+/// Tolerance of the shear modulus of an energy, relative to that of the material.
 const APART: f64 = 1e-3;
 
 impl OwnEnergy {

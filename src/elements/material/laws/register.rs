@@ -1,4 +1,4 @@
-//! The laws that a material may have, with all that is known of each beside its formulas in one row: word and constants in
+//! The laws that a material may have, with all data of each except its formulas in one row: word and constants in
 //! scene files, reference and lists, how it is made from its constants, and how near it is to rubber.
 
 use super::own::{OwnEnergy, StrainEnergy};
@@ -55,7 +55,7 @@ pub(crate) type LawOfConstants = Result<(Law, Option<f64>), String>;
 pub struct LawInformation {
     /// Its name, the word in scene files.
     pub name: &'static str,
-    /// Its strain energy and what it is for, in words.
+    /// Its strain energy and its purpose, in words.
     pub about: &'static str,
     /// Its constants in scene files; none where Young's modulus and Poisson's ratio are its constants.
     pub constants: &'static [LawConstant],

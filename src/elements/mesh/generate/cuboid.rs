@@ -5,7 +5,7 @@ use super::{check_grading, check_nodes, grid_lines};
 use crate::base::input::{InputError, positive};
 use crate::elements::mesh::{CellKind, Mesh};
 
-/// How a three-dimensional grid is divided into cells, row by row along x.
+/// Division of a three-dimensional grid into cells, row by row along x.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SolidCells {

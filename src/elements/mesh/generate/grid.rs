@@ -6,7 +6,7 @@ use std::str::FromStr;
 use crate::base::input::InputError;
 use crate::elements::mesh::{CellKind, Mesh};
 
-/// How a two-dimensional grid is divided into cells.
+/// Division of a two-dimensional grid into cells.
 ///
 /// Cells are numbered row by row of the grid; of two triangles per grid cell, first the lower ones
 /// of the row, then the upper ones (in a ring: first the ones that begin with inner and outer node
@@ -89,7 +89,7 @@ type Division<const N: usize, const C: usize> = [[[usize; N]; C]];
 /// One quadrilateral.
 const WHOLE: [[[usize; 2]; 4]; 1] = [[A, B, C, D]];
 
-/// Which way a diagonal runs.
+/// Direction of a diagonal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Diagonal {
     /// From the upper left to the lower right corner.

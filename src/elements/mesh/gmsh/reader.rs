@@ -84,7 +84,7 @@ impl<'a> Reader<'a> {
         Ok(Some(name))
     }
 
-    /// The line break after a line: what follows it may be binary.
+    /// The line break after a line: binary data may follow.
     fn skip_line_break(&mut self) {
         let rest = &self.file[self.at..];
         let length = rest.iter().position(|&byte| byte == b'\n').map_or(rest.len(), |at| at + 1);

@@ -10,7 +10,7 @@ pub(super) struct ElementType {
     shape: &'static str,
 }
 
-/// Number, dimension, nodes and shape of the types; those of an order above 4 are left out.
+/// Number, dimension, nodes and shape of the types; those of an order above 4 are omitted.
 const TYPES: &[(u8, usize, usize, &str)] = &[
     (1, 1, 2, "lines"),
     (2, 2, 3, "triangles"),

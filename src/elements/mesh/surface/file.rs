@@ -20,9 +20,9 @@ impl Mesh {
     /// Reads the surface of a solid from a file: STL (`.stl`, text or binary), OBJ (`.obj`) or Gmsh (`.msh`, with triangles of 3
     /// nodes alone; see [`read_gmsh`](Self::read_gmsh)).
     ///
-    /// Coordinates are taken as metres; of a drawing in millimetres take [`mapped`](Self::mapped) by 0.001. Points of STL and OBJ
+    /// Coordinates are in metres; scale a drawing in millimetres with [`mapped`](Self::mapped) by 0.001. Points of STL and OBJ
     /// files at the same place, but for round-off (5e-7 of the largest coordinate), are one node, in the order in which they come
-    /// first. Triangles without an area are left out, and triangles with corners of others on their sides are divided there; both
+    /// first. Triangles without an area are omitted, and triangles with corners of others on their sides are divided there; both
     /// are [notes](Self::notes). Of OBJ files the lines `v` and `f` are read; faces of more than three corners are divided into triangles
     /// around the first one. The surface is checked and turned outwards as by [`closed`](Self::closed).
     ///

@@ -15,7 +15,7 @@ type Places = BTreeMap<[i64; 3], Vec<usize>>;
 /// Corners that are nearer to each other than this fraction of the largest coordinate are one: round-off of numbers of 4 bytes, of
 /// which binary STL files consist.
 const SAME: f64 = 4.0 * f32::EPSILON as f64;
-/// Rounds in which triangles are divided: one for each of their sides, and a few for what these leave.
+/// Rounds in which triangles are divided: one for each of their sides, and a few for the rest.
 const MOST_ROUNDS: usize = 8;
 
 /// The mesh of triangles, by their `corners`, whose corners at the same place are one node; without triangles that have no area, and
@@ -35,7 +35,7 @@ pub(super) fn mended(corners: &[[f64; 3]]) -> Result<Mesh, InputError> {
             count => divided += count,
         }
     }
-    // nodes of triangles that were left out may belong to no other one
+    // nodes of omitted triangles may belong to no other one
     let mut numbers = vec![None; positions.len()];
     let mut kept = Vec::new();
     for node in triangles.iter_mut().flatten() {

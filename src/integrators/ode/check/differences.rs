@@ -1,4 +1,4 @@
-//! Differences, and what they say about supplied derivatives.
+//! Comparison of supplied derivatives with differences.
 
 use faer::MatMut;
 use thiserror::Error;

@@ -1,4 +1,4 @@
-//! Steps taken back, against differences of the steps.
+//! Adjoints of steps, against differences of the steps.
 
 use super::{StepAdjoint, Transposed};
 use crate::integrators::common::{Error, Integrator};
@@ -159,7 +159,7 @@ fn take(integrator: &mut Rosenbrock<Pair>, [from, to]: [f64; 2], y: [f64; 2]) ->
     Ok(())
 }
 
-/// A number at the end by times, parameter and initial values: steps taken back, and central differences of the steps, extrapolated, differ by
+/// A number at the end by times, parameter and initial values: adjoints of steps, and central differences of the steps, extrapolated, differ by
 /// 2e-9 of the largest at most (measured: 4e-10, the noise of df/dt, which steps find by a difference). Without the change of the Jacobian
 /// it were 4e-5, without that in time 1e-5.
 #[test]

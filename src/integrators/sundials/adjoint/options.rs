@@ -1,4 +1,4 @@
-//! How an adjoint gradient is computed.
+//! Options of adjoint gradients.
 
 use crate::base::{input::InputError, vector::size_or_one};
 use crate::integrators::common::{AbsoluteTolerance, Tolerances, check_count};

@@ -16,9 +16,9 @@ pub(super) struct SlopesCheck {
 #[derive(Clone, Copy)]
 pub(super) struct Names {
     pub(super) slopes: &'static str,
-    /// The variables that they are taken by.
+    /// The variables of the derivatives.
     pub(super) by: [&'static str; 2],
-    /// The function of [`ode::check`](crate::integrators::ode::check) that looks at all of them.
+    /// The function of [`ode::check`](crate::integrators::ode::check) that checks all of them.
     pub(super) all: &'static str,
 }
 

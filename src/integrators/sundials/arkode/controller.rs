@@ -1,4 +1,4 @@
-//! How ARKODE chooses its steps from the errors of the last ones.
+//! Step size controllers of ARKODE, by the errors of the last steps.
 
 use std::ffi::c_void;
 

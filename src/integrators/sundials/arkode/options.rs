@@ -1,4 +1,4 @@
-//! How ARKODE is to integrate.
+//! Options of ARKODE.
 
 use super::{
     butcher_table::ButcherTable,
@@ -90,7 +90,7 @@ impl ArkodeOptions {
         self
     }
 
-    /// How the next step size follows from the last errors. Default: [`Controller::Pid`].
+    /// Controller of the step size. Default: [`Controller::Pid`].
     pub fn controller(mut self, controller: Controller) -> Self {
         self.own.controller = controller;
         self

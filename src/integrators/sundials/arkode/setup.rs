@@ -140,7 +140,7 @@ impl<S: Ode> Session<ArkodeKind, S> {
             let (memory, data) = (arkode.memory.raw, arkode.host.as_ptr());
             scheme.set(memory, |name, code| arkode.host.accept(name, code))?;
             if is_imex && !cfg!(sundials_major = "6") {
-                // SUNDIALS 7 evaluates the slopes of Hermite polynomials anew, with the errors of stiff components in them
+                // SUNDIALS 7 re-evaluates the slopes of Hermite polynomials, with the errors of stiff components in them
                 arkode.set(named!(ARKStepSetInterpolantType), ffi::ARK_INTERP_LAGRANGE)?;
             }
             arkode.set(named!(ARKStepSetInterpolantDegree as _), degree as i32)?;

@@ -1,4 +1,4 @@
-//! How the equations of implicit stages are solved.
+//! Solution of the equations of implicit stages.
 
 use crate::base::input::InputError;
 use crate::integrators::{
@@ -10,7 +10,7 @@ use crate::integrators::{
     },
 };
 
-/// Where the iteration for an implicit stage starts (`ARKStepSetPredictorMethod`).
+/// Predictor of the iteration for an implicit stage (`ARKStepSetPredictorMethod`).
 ///
 /// Interpolants are those of the step before, extrapolated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,7 +80,7 @@ impl<O: OfStages> SolverOptions<O> {
         self
     }
 
-    /// Where iterations start. Default: variable order.
+    /// Predictor of the iterations. Default: variable order.
     pub fn predictor(mut self, predictor: Predictor) -> Self {
         self.own.stages_mut().predictor = predictor;
         self

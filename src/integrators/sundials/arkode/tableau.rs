@@ -31,7 +31,7 @@ pub struct Tableau {
 }
 
 impl Tableau {
-    /// Of this order, with the rows of a, in which zeros at the end may be left out, and the weights b.
+    /// Of this order, with the rows of a, in which zeros at the end may be omitted, and the weights b.
     ///
     /// Coefficients that cannot be used are an error of the solver's `new`.
     pub fn new<R: AsRef<[f64]>>(
@@ -109,7 +109,7 @@ impl Tableau {
         self.compare(orders)
     }
 
-    /// Refuses orders above those that C has found, which knows conditions up to order 6.
+    /// Rejects orders above those that C has found, by its conditions up to order 6.
     fn compare(&self, found: [i32; 2]) -> Result<(), InputError> {
         let embedded = self.embedded.as_ref().map_or(0, |(order, _)| *order);
         let wrong = |(declared, found): (u32, i32)| i64::from(declared).min(6) > i64::from(found);

@@ -1,4 +1,4 @@
-//! How CVODE is to integrate.
+//! Options of CVODE.
 
 use crate::base::input::InputError;
 use crate::integrators::{

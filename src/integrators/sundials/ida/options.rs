@@ -1,4 +1,4 @@
-//! How IDA is to integrate.
+//! Options of IDA.
 
 use crate::base::input::InputError;
 use crate::integrators::{

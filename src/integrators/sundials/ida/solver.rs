@@ -1,4 +1,4 @@
-//! IDA as users see it.
+//! The public solver of IDA.
 
 use faer::MatRef;
 
@@ -105,7 +105,7 @@ impl<S: Dae> Ida<S> {
 
     /// As [`set_sensitivities`](Self::set_sensitivities), with the time derivatives `sp` of the
     /// sensitivities, which have to be consistent: (dF/dy) s + (dF/dy') s' + dF/dp = 0.
-    /// [`consistent_start`](Self::consistent_start) finds what is missing.
+    /// [`consistent_start`](Self::consistent_start) finds the others.
     ///
     /// # Errors
     /// As for [`set_sensitivities`](Self::set_sensitivities).

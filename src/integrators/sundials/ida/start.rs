@@ -1,4 +1,4 @@
-//! Where IDA starts: states and their time derivatives, and how they are made consistent.
+//! Start of IDA: states and their time derivatives, and the computation of consistent ones.
 
 use std::mem;
 

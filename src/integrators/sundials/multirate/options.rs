@@ -1,4 +1,4 @@
-//! How a multirate method is to integrate.
+//! Options of multirate methods.
 
 use super::coupling::Coupling;
 use crate::base::input::InputError;

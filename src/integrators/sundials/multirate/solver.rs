@@ -1,4 +1,4 @@
-//! A multirate method as users see it.
+//! The public solver of multirate methods.
 
 use std::{fmt, ptr};
 

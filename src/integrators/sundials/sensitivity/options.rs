@@ -1,9 +1,9 @@
-//! Which sensitivities are computed, and how.
+//! Selection of sensitivities, and options of their computation.
 
 use crate::base::{input::InputError, vector::size_or_one};
 use crate::integrators::common::check_finite;
 
-/// How the equations of the sensitivities are solved together with those of the state.
+/// Coupling of the equations of the sensitivities with those of the state in their solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -16,7 +16,7 @@ pub enum SensitivityMethod {
     StaggeredOneByOne,
 }
 
-/// Where the right-hand sides or residuals of the sensitivities come from.
+/// Source of the right-hand sides or residuals of the sensitivities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -82,7 +82,7 @@ impl Sensitivities {
         }
     }
 
-    /// How they are solved. Default: simultaneous.
+    /// Method of their solution. Default: simultaneous.
     pub fn method(mut self, method: SensitivityMethod) -> Self {
         self.method = method;
         self
@@ -93,7 +93,7 @@ impl Sensitivities {
         self.method(SensitivityMethod::Staggered)
     }
 
-    /// Where their equations come from. Default: central differences.
+    /// Source of their equations. Default: central differences.
     pub fn source(mut self, source: SensitivitySource) -> Self {
         self.source = source;
         self
@@ -133,7 +133,7 @@ impl Sensitivities {
         &self.parameters
     }
 
-    /// How `count` parameters change with each of these at first: that one by itself.
+    /// Initial derivatives of `count` parameters by each of these: unit vectors.
     pub(crate) fn directions(&self, count: usize) -> Vec<f64> {
         let column = |&place: &usize| (0..count).map(move |k| if k == place { 1.0 } else { 0.0 });
         self.parameters.iter().flat_map(column).collect()

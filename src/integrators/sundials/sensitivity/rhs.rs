@@ -6,7 +6,7 @@ use super::options::{Sensitivities, SensitivitySource};
 use crate::base::input::InputError;
 use crate::integrators::{common::Tolerances, ode::Failure};
 
-/// How parameters of an `Ode` or a `Dae` are read and set.
+/// Access to the parameters of an `Ode` or a `Dae`.
 pub(in crate::integrators::sundials) struct Access<S> {
     pub(in crate::integrators::sundials) get: fn(&S) -> &[f64],
     pub(in crate::integrators::sundials) set: fn(&mut S, &[f64]),
@@ -29,7 +29,7 @@ impl<S> Access<S> {
 /// Which parameters the sensitivities are to, and scratch space for differences.
 pub(in crate::integrators::sundials) struct SensitivityRhs {
     parameters: Vec<usize>,
-    /// How the parameters of the system change with each of these: one column after the other.
+    /// Derivatives of the parameters of the system by each of these: one column after the other.
     directions: Vec<f64>,
     source: SensitivitySource,
     scales: Vec<f64>,
@@ -188,7 +188,7 @@ impl SensitivityRhs {
         let squares: f64 = y.iter().zip(s).enumerate().map(relative).map(|part| part * part).sum();
         let norm = (squares / y.len() as f64).sqrt();
         let step = smallness / norm.max(1.0 / self.scales[index]);
-        // exactly what the parameter changes by
+        // exactly the change of the parameter
         let p = self.p[self.parameters[index]];
         (p + step) - p
     }

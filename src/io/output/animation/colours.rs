@@ -20,7 +20,7 @@ pub(super) struct Quantity {
     of: Of,
 }
 
-/// Where it comes from.
+/// Its source.
 enum Of {
     /// The cell of a face and its measure of strain.
     Cell(fn(&CellField, Strain) -> f64),

@@ -307,7 +307,7 @@ fn add_shape(shape: &Shape, courses: &Value, shapes: &mut Vec<Value>) {
     }
 }
 
-/// Names and lines of the actuators that have these, and what drives them at each sample.
+/// Names and lines of the actuators that have these, and their drives at each sample.
 fn actuators(
     trajectory: &Trajectory,
     frames: &[&Sample],
@@ -347,7 +347,7 @@ pub(super) fn point_masses(mesh: &Mesh) -> Vec<usize> {
     (0..mesh.node_count()).filter(|&node| !in_cell[node]).collect()
 }
 
-/// How the motion was computed.
+/// Report of the computation.
 fn run(trajectory: &Trajectory) -> Value {
     let (report, mesh) = (trajectory.report(), trajectory.body().mesh());
     json!({

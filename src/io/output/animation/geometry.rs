@@ -128,7 +128,7 @@ impl Geometry {
         })
     }
 
-    /// The places of what a spring joins, or of what a cable runs along.
+    /// The positions of the ends of a spring, or of the points of a cable.
     pub(super) fn ends(&self, joints: &[LinePoint]) -> Vec<usize> {
         let place = |joint: &LinePoint| match joint.node() {
             Some(node) => self.places[node],

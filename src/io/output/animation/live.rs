@@ -45,7 +45,7 @@ impl Picture {
     /// Drawing of `scene`, and all data that do not change.
     ///
     /// # Errors
-    /// Springs, constraints or contact of what does not exist.
+    /// Springs, constraints or contact of missing objects.
     pub(crate) fn new(scene: &Scene) -> Result<(Self, Value), Error> {
         let mesh = scene.body().mesh();
         let points = data::point_masses(mesh);

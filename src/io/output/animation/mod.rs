@@ -6,10 +6,10 @@
 //! (`motion`), drawing in the plane and in space (`plane`, `space`, chosen by `stage`), forces of obstacles
 //! (`contacts`), and gravity, fields and remanences (`acting`). Shared by all motions are numbers and colours
 //! (`decode`, `moment`, `format`, `paint`, `colour`), the visible part of space (`view`), charts (`chart`,
-//! `sensors`), `arrow`, `arrows`, frames as files (`saving`; `vectors` stands for a canvas and keeps the
+//! `sensors`), `arrow`, `arrows`, frames as files (`saving`; `vectors` replaces a canvas and stores the
 //! drawing as SVG), and time (`controls`, `player`). `motions` combines several: those with the same number
 //! of axes in the box around all of them, a metre with as many pixels in each picture as in the one with the
-//! least room, and colour scales to the largest end. Data of a motion are thus independent of others, and
+//! least space, and colour scales to the largest end. Data of a motion are thus independent of others, and
 //! existing pages can be joined.
 //!
 //! A policy in the page forbids it any request. Text of users reaches the page as JSON with `<` escaped and

@@ -30,7 +30,7 @@ pub(crate) struct Axis {
     low: f64,
     high: f64,
     is_logarithmic: bool,
-    /// Values of the lines, and what stands beside them; minor lines have no label.
+    /// Values of the lines, and their labels; minor lines have none.
     pub(crate) ticks: Vec<(f64, String)>,
     /// Unit of the labels.
     pub(crate) unit: String,
@@ -65,7 +65,7 @@ impl Axis {
         Self { low, high, is_logarithmic: false, ticks, unit }
     }
 
-    /// From the least to the largest of the positive `values`, one decade at least, with some room at both ends.
+    /// From the least to the largest of the positive `values`, one decade at least, with margins at both ends.
     /// Labels are written by `label`; of many decades every second, third, ... has one, about `count` in all.
     pub(crate) fn logarithmic(
         values: impl Iterator<Item = f64>,
@@ -90,7 +90,7 @@ impl Axis {
         Self { low, high, is_logarithmic: true, ticks, unit: String::new() }
     }
 
-    /// Where a value lies: 0 at the lower end, 1 at the upper.
+    /// Position of a value: 0 at the lower end, 1 at the upper.
     pub(crate) fn place(&self, value: f64) -> f64 {
         let value = if self.is_logarithmic { value.log10() } else { value };
         (value.clamp(-LARGEST, LARGEST) - self.low) / (self.high - self.low)
@@ -139,7 +139,7 @@ fn scaled(largest: f64, unit: &str) -> (f64, String) {
         return (1.0, name);
     }
     let power = 3 * (largest.log10() / 3.0).floor() as i32;
-    // what powi gives is not the nearest number
+    // the result of powi is not the nearest number
     let factor = format!("1e{power}").parse().unwrap_or(1.0);
     (factor, format!("{} {name}", power_text(factor)).trim_end().to_owned())
 }

@@ -21,10 +21,10 @@ type Point = [f64; 2];
 
 /// Mean width of a character of 12 px.
 pub(crate) const CHARACTER: f64 = 6.6;
-/// Length of the line that a legend shows, with its room, and the distance of its lines (px).
+/// Length of the line in a legend, with its margin, and the distance of its lines (px).
 const SWATCH: f64 = 30.0;
 const LEGEND: f64 = 19.0;
-/// Left end of titles, and room on the right of fields (px).
+/// Left end of titles, and right margin of fields (px).
 const MARGIN: f64 = 20.0;
 
 /// Colours of all but the series.

@@ -23,7 +23,7 @@ const BELOW: [f64; 2] = [18.0, 52.0];
 /// Panels side by side and one below the other.
 #[derive(Debug)]
 pub(crate) struct Figure {
-    /// Title and a line below it; without them there is no room for them.
+    /// Title and a line below it; without them no space is reserved.
     pub(crate) title: String,
     pub(crate) about: String,
     pub(crate) panels: Vec<Panel>,

@@ -1,4 +1,4 @@
-//! A field with two axes, and what is drawn in it and beside it.
+//! A field with two axes, its contents and its legends.
 
 use svg::node::element::{Group, Text};
 
@@ -6,7 +6,7 @@ use super::{
     Axis, CHARACTER, LEGEND, MARGIN, Point, SWATCH, Series, Theme, rectangle, stroke, text,
 };
 
-/// Width of the scale of colours, room beside its labels (px), and its parts.
+/// Width of the scale of colours, margin beside its labels (px), and its parts.
 const SCALE: [f64; 2] = [14.0, 22.0];
 const PARTS: usize = 60;
 /// Colours from the least to the largest value, ever lighter: also a grey picture shows them.
@@ -29,7 +29,7 @@ pub(crate) struct Panel {
     pub(crate) notes: Vec<Note>,
     /// More upright axes, and where they cross the floor; then the field has no outline.
     pub(crate) uprights: Vec<(f64, Axis)>,
-    /// A scale of colours on the right, with what stands above it.
+    /// A scale of colours on the right, with its heading.
     pub(crate) scale: Option<(Axis, String)>,
     /// Room for notes above the field (px).
     pub(crate) above: f64,

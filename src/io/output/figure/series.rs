@@ -12,7 +12,7 @@ use super::{Point, Theme, round};
 pub(crate) struct Series {
     /// Name in the legend; without one it has no line there.
     pub(crate) name: String,
-    /// Values along both axes; what is not finite is a gap in a line.
+    /// Values along both axes; a value that is not finite is a gap in a line.
     pub(crate) points: Vec<(f64, f64)>,
     pub(crate) colour: Cow<'static, str>,
     /// Width of the line (px); 0 draws none.
@@ -77,7 +77,7 @@ impl Series {
         Self { width: 0.0, is_area: true, opacity, ..Self::line(colour, points) }
     }
 
-    /// A group for the series, with what a page knows it by.
+    /// A group for the series, with its identifier for a page.
     pub(super) fn group(&self) -> Group {
         let class = match (&self.tip, self.is_area) {
             (Some(_), _) => "mark",

@@ -7,7 +7,7 @@ use crate::io::output::{COLOURS, DASHES};
 
 /// Width of the page, and height of the field of a panel (px).
 const SIZE: [f64; 2] = [720.0, 170.0];
-/// Width of a field, about, and room above it for names of phases (px).
+/// Approximate width of a field, and margin above it for names of phases (px).
 const FIELD: f64 = 600.0;
 const PHASES: f64 = 14.0;
 /// Approximate number of lines across a panel and along the axis of time.
@@ -71,7 +71,7 @@ fn panel(table: &Table, x: &Axis, columns: &[&Column]) -> Panel {
     Panel { axes, names, series, ..Panel::default() }
 }
 
-/// The ends of the phases but the last, and above the first panel their names where there is room.
+/// The ends of the phases but the last, and above the first panel their names where there is space.
 fn add_phases(panels: &mut [Panel], phases: &[(String, f64)]) {
     let Some(x) = panels.first().map(|panel| panel.axes[0].clone()) else { return };
     if phases.len() < 2 {

@@ -14,7 +14,7 @@ use crate::io::output::columns::{
     Columns, DIFFERENCE, EXCHANGED, OF_SENSOR, STORED, standard_unit,
 };
 
-/// A motion in numbers: what `trajectory.csv` holds of it.
+/// A motion in numbers: the contents of `trajectory.csv`.
 #[derive(Debug, Clone)]
 pub struct Table {
     /// Times (s).

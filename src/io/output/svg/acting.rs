@@ -13,7 +13,7 @@ use crate::io::output::acting::{EVERYWHERE, Remanence, everywhere};
 /// Colours and names of gravity and the magnetic field in the key.
 const MEANINGS: [(&str, &str); 2] = [("#009e73", "gravity"), ("#7d3fa8", "magnetic field")];
 const REMANENCE: &str = "#d55e00";
-/// Length of the longest arrow beside a caption, and the room of each (px).
+/// Length of the longest arrow beside a caption, and the space of each (px).
 const LONGEST: f64 = 18.0;
 const ROOM: f64 = 38.0;
 

@@ -1,4 +1,4 @@
-//! Where panels stand on the page, and which part of space they show.
+//! Positions of panels on the page, and the part of space in each.
 
 use super::obstacle::{Outline, outlines};
 use super::projection::{Point, drawn, positions};
@@ -24,7 +24,7 @@ pub(in crate::io::output) const BAR_WIDTH: f64 = 0.12;
 pub(in crate::io::output) struct View {
     low: Point,
     high: Point,
-    /// Upper edge of what each panel shows by itself; a row of panels is only as high as its highest panel.
+    /// Upper edge of the contents of each panel; a row of panels is only as high as its highest panel.
     tops: Vec<f64>,
     /// The obstacles of each panel.
     pub(super) obstacles: Vec<Vec<Outline>>,
@@ -168,7 +168,7 @@ fn clip(polygon: &[Point], level: impl Fn(&Point) -> f64) -> Vec<Point> {
     clipped
 }
 
-/// Where everything stands on the page.
+/// Positions of all parts of the page.
 pub(super) struct Layout {
     columns: usize,
     /// Least width of the page (px).
@@ -178,20 +178,20 @@ pub(super) struct Layout {
     rows: Vec<PanelRow>,
     /// Pixels per metre.
     scale: f64,
-    /// Left edge of what the panels show (m).
+    /// Left edge of the contents of the panels (m).
     left: f64,
 }
 
-/// A row of panels, as high as what it shows.
+/// A row of panels, as high as its contents.
 struct PanelRow {
     /// Upper and lower edge on the page (px), without the captions.
     edges: [f64; 2],
-    /// Upper edge of what its panels show (m).
+    /// Upper edge of the contents of its panels (m).
     top: f64,
 }
 
 impl Layout {
-    /// Panels that each have room for a caption of so many characters and `beside` it (px).
+    /// Panels with space for a caption of so many characters and `beside` it (px).
     pub(super) fn new(
         view: &View,
         columns: Option<usize>,
@@ -271,7 +271,7 @@ impl Layout {
         [self.width, bottom - top + 19.0]
     }
 
-    /// Upper edge of what a panel shows (m).
+    /// Upper edge of the contents of a panel (m).
     pub(super) fn top(&self, panel: usize) -> f64 {
         self.row(panel).top
     }

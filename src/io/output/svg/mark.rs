@@ -7,7 +7,7 @@ use svg::node::element::{Circle, Text};
 use super::projection::Point;
 use crate::io::output::INK;
 
-/// How a node is marked.
+/// Mark of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Mark {
     /// By the user.

@@ -1,4 +1,4 @@
-//! How space is seen in the plane of the drawing.
+//! Projection of space onto the plane of the drawing.
 
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::body::Body;
@@ -6,7 +6,7 @@ use crate::elements::body::Body;
 /// A point in the plane of the drawing: (m) or (px).
 pub(in crate::io::output) type Point = [f64; 2];
 
-/// How space is seen: from the front, turned 30 degrees to the right and 20 degrees from above.
+/// Direction of view: from the front, turned 30 degrees to the right and 20 degrees from above.
 /// Axes of the drawing, to the right and upward, and the direction away from the viewer.
 const RIGHTWARD: [f64; 3] = [0.866_025, 0.5, 0.0];
 const UPWARD: [f64; 3] = [-0.171_010, 0.296_198, 0.939_693];

@@ -1,4 +1,4 @@
-//! How deep what is in a chamber lies, and how high it stands.
+//! Depth and level of the contents of a chamber.
 
 use super::walls::{Shape, edge_parts};
 use super::{Chamber, ChamberForce, Geometry, Walls};

@@ -22,7 +22,7 @@ use crate::scene::forces::signal::{VectorSignal, finite_at};
 
 /// The force of a fluid.
 pub(crate) struct FluidForce {
-    /// Where its velocity was given.
+    /// Source of its velocity.
     pub(super) input: String,
     pub(super) faces: FollowedFaces,
     pub(super) rods: Vec<RodDrag>,

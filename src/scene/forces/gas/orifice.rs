@@ -39,7 +39,7 @@ pub struct Orifice {
     critical_ratio: f64,
 }
 
-/// How large it is.
+/// Its size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Opening {
     /// C (m^3/(s Pa))
@@ -167,7 +167,7 @@ const AIR: f64 = 1.4;
 /// (2/(k + 1))^(k/(k - 1)), the ratio of pressures below which a nozzle is choked.
 const CRITICAL: f64 = 0.528_281_787_717_174_3;
 
-/// How the flow depends on the ratio of pressures.
+/// Dependence of the flow on the ratio of pressures.
 enum OrificeLaw {
     /// That of ISO 6358, of this critical ratio.
     Standard {

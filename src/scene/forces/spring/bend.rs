@@ -1,11 +1,11 @@
-//! How the path of a cable turns at a place, on which its friction there depends.
+//! Angle of the path of a cable at a point, on which its friction there depends.
 
 use crate::base::vector::{dot, norm};
 
 /// Below this angle (rad) a bend is smoothed: its angle would have a kink where the cable is straight.
 const STRAIGHT: f64 = 1e-3;
 
-/// How the path turns from one line to the next.
+/// Angle of the path from one line to the next.
 pub(super) struct Bend {
     /// theta^2/(theta^2 + s^2)^(1/2), with the angle theta and the angle s of what counts as straight.
     pub(super) angle: f64,

@@ -42,7 +42,7 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// How the path turns to the `next` line.
+    /// Angle of the path to the `next` line.
     fn bend(&self, next: &Self) -> Bend {
         Bend::new([&self.direction, &next.direction], [self.length, next.length])
     }

@@ -192,7 +192,7 @@ impl<'s> Same<'s> {
         self.scene.body.part_of(self.map.images[part.nodes.start])
     }
 
-    /// Where a body is.
+    /// Position of a body.
     fn side(&self, part: &Part) -> Side {
         let is_cut = self.image_of_body(part).nodes == part.nodes;
         match self.map.numbers[part.nodes.start] {

@@ -104,7 +104,7 @@ impl<'s> Same<'s> {
         ];
         match unknown.iter().find(|(_, count)| *count > 0) {
             Some((name, count)) => {
-                let help = format!("what {model} of them does is not known: {}", self.instead());
+                let help = format!("{model} does not support them: {}", self.instead());
                 Err(InputError::new(*name, count, help))
             }
             None => Ok(()),
@@ -237,7 +237,7 @@ impl<'s> Same<'s> {
             let Some((dof, coefficient)) = row.nodal() else {
                 let instead = self.instead();
                 let help = format!(
-                    "what is held in several displacements together is not known of smaller scenes: hold axes of nodes, or {instead}"
+                    "smaller scenes do not support constraints on several displacements together: hold axes of nodes, or {instead}"
                 );
                 return Err(InputError::new(input, row.label(d), help));
             };

@@ -1,4 +1,4 @@
-//! How near to a face a node is tied to it.
+//! Distance from a face within which a node is tied to it.
 
 use crate::base::vector::norm;
 

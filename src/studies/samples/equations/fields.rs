@@ -86,7 +86,7 @@ impl Brusselator {
         (0..self.points).flat_map(|i| [u(i), 3.0]).collect()
     }
 
-    /// Where its Jacobian may be nonzero.
+    /// Pattern of its Jacobian.
     #[must_use]
     pub fn pattern(&self) -> &Pattern {
         &self.pattern
@@ -169,7 +169,7 @@ impl HeatedSquare {
         self.source.iter().map(|phi| factor * phi).collect()
     }
 
-    /// Where its Jacobian is nonzero.
+    /// Pattern of its Jacobian.
     #[must_use]
     pub fn pattern(&self) -> &Pattern {
         &self.pattern

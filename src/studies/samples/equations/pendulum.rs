@@ -2,7 +2,7 @@
 
 use crate::integrators::ode::{Dae, Failure, Ode};
 
-/// A pendulum of unit length in Cartesian coordinates, let go from the horizontal, with gravity
+/// A pendulum of unit length in Cartesian coordinates, released from the horizontal, with gravity
 /// such that its period is exactly 2: at t = 2, 4, 6, ... it is back at the start.
 ///
 /// As an ODE for (x, y, vx, vy), with the string tension solved for; as a DAE of index 1 with the

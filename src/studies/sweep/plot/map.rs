@@ -45,7 +45,7 @@ impl Plot<'_> {
     }
 }
 
-/// Where the cells around ascending values begin and end, within an axis.
+/// Bounds of the cells around ascending values, within an axis.
 fn edges(values: &[f64], axis: &Axis) -> Vec<f64> {
     let middle = |a: f64, b: f64| axis.value(0.5 * (axis.place(a) + axis.place(b)));
     let middles = values.windows(2).map(|pair| middle(pair[0], pair[1]));

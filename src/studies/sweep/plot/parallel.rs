@@ -4,7 +4,7 @@ use super::variable::Variable;
 use super::{FAILED, Plot, SIZE};
 use crate::io::output::{Axis, Figure, Note, Panel, Series, shade};
 
-/// Distance of two axes, and room at both ends for their names (px).
+/// Distance of two axes, and margins at both ends for their names (px).
 const APART: f64 = 150.0;
 const ENDS: f64 = 60.0;
 /// Room for the scale of colours (px).
@@ -58,7 +58,7 @@ impl Plot<'_> {
     }
 }
 
-/// The end of a long name, which tells more than its beginning.
+/// The end of a long name, which is more specific than its beginning.
 fn short(name: &str) -> String {
     match name.chars().count().checked_sub(LETTERS) {
         Some(more) if more > 0 => {

@@ -73,7 +73,7 @@ impl Variable {
         }
     }
 
-    /// Its axis, with room at both ends in parts of the range.
+    /// Its axis, with margins at both ends as fractions of the range.
     pub(super) fn axis(&self, room: f64) -> Axis {
         let values = self.values.iter().copied();
         let mut axis = match self.is_logarithmic {
