@@ -1,4 +1,4 @@
-//! Rods whose path turns within an element by more than their section allows.
+//! Rods beyond what the model of a rod allows: paths that turn within an element by more than the section does, rods that are not slender.
 
 use crate::base::input::{four_digits, short};
 use crate::dynamics::report::Indicator;
@@ -6,6 +6,9 @@ use crate::elements::body::Body;
 
 /// How far a section may reach, over the radius of curvature in an element: to where it meets that beside it.
 const MOST: f64 = 1.0;
+
+/// Length of a rod over its width from which on it is slender, the same as of a solid that a rod stands for.
+const SLENDER: f64 = 3.0;
 
 /// Sections beside each other that overlap, in a single body that is a rod.
 pub(super) fn kinked(body: &Body) -> Option<Indicator> {
@@ -26,4 +29,25 @@ pub(super) fn kinked(body: &Body) -> Option<Indicator> {
         )
     };
     Some(Indicator::trusted("rod-curvature", (value, "1"), [0.0, MOST], || said.clone(), beyond))
+}
+
+/// The slenderness of a single body that is a rod.
+pub(super) fn stubby(body: &Body) -> Option<Indicator> {
+    let [length, width] = body.rod_extent()?;
+    let name = body.name().unwrap_or("rod");
+    let value = length / width;
+    let said = format!(
+        "rod \"{name}\" is {} m long and {} m wide: {} times (at least: {SLENDER})",
+        short(length),
+        short(width),
+        four_digits(value),
+    );
+    let beyond = || {
+        format!(
+            "{said}; what a clamp or a load at an end does to the section reaches a width into the body, which a rod leaves out: make it longer or thinner, or \
+             model it as a solid; if its section is given by numbers, their units are m^2 and m^4"
+        )
+    };
+    let limits = [SLENDER, f64::INFINITY];
+    Some(Indicator::trusted("rod-slenderness", (value, "1"), limits, || said.clone(), beyond))
 }
