@@ -3,12 +3,10 @@
 use crate::base::input::{four_digits, short};
 use crate::dynamics::report::Indicator;
 use crate::elements::body::Body;
+use crate::elements::rod::SLENDER;
 
 /// How far a section may reach, over the radius of curvature in an element: to where it meets that beside it.
 const MOST: f64 = 1.0;
-
-/// Length of a rod over its width from which on it is slender, the same as of a solid that a rod stands for.
-const SLENDER: f64 = 3.0;
 
 /// Sections beside each other that overlap, in a single body that is a rod.
 pub(super) fn kinked(body: &Body) -> Option<Indicator> {

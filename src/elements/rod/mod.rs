@@ -28,7 +28,7 @@ pub(crate) use growth::RodGrowth;
 use nodes::Nodes;
 pub use path::RodPath;
 pub use section::{RodSection, SectionNumbers};
-pub(crate) use solid_axis::SolidAxis;
+pub(crate) use solid_axis::{SLENDER, SolidAxis};
 use strain::{Deformed, Section};
 pub(crate) use tube::{Bend, RodPoint, Spokes, Tube, TubePiece};
 pub(crate) use turning::{CrossSection, SectionLoad};
