@@ -90,11 +90,10 @@ def scene_of(scenario: Scenario, n_elements: int) -> pliant.Scene:
         for load in rod.loads:
             phase["load"].append({"nodes": f"{name}/{ENDS[load.at]}", "total": list(load.force)})
     friction = max(rod.friction for rod in scenario.rods)
-    if len(scenario.rods) > 1 or scenario.self_contact:
-        radius = min(rod.radius for rod in scenario.rods)
-        touch = {"distance": DISTANCE * radius, "friction_coefficient": friction}
-        touch["sticking_speed"] = STICKING * scenario.rods[0].length
-        tables["touch"] = [touch]
+    names = [rod["name"] for rod in tables["rod"]]
+    # one body alone touches itself
+    touching = ([names] if len(names) > 1 else []) + ([[name] for name in names] if scenario.self_contact else [])
+    tables["touch"] = [touch_of(scenario, bodies, friction) for bodies in touching]
     tables["obstacle"] = [obstacle_of(scenario, own, friction) for own in scenario.obstacles]
     used = {key: value for key, value in tables.items() if value}
     phase = {key: value for key, value in phase.items() if value}
@@ -171,6 +170,16 @@ def add_sliding(tables: dict, phase: dict, rod: Rod, nodes: str, end: End, motio
         {"name": f"{name}-clamp", "kind": "fixed", "between": [f"{name}-rotor", nodes], **common},
     ]
     phase["motor"].append({"joint": f"{name}-motor", "times": list(motion.times), "angles": angles})
+
+
+def touch_of(scenario: Scenario, bodies: list[str], friction: float) -> dict:
+    return {
+        "name": "-".join(bodies),
+        "bodies": bodies,
+        "distance": DISTANCE * min(rod.radius for rod in scenario.rods),
+        "friction_coefficient": friction,
+        "sticking_speed": STICKING * scenario.rods[0].length,
+    }
 
 
 def obstacle_of(scenario: Scenario, obstacle, friction: float) -> dict:
