@@ -1,6 +1,6 @@
 //! Dynamics of soft elastic bodies: finite elements in Rust, stiff integration by SUNDIALS.
 //!
-//! A [`Scene`] is a [`Body`] (a [`Mesh`] made of a [`Material`]), what surrounds it, and a timeline
+//! A [`Scene`] is a [`Body`] (a [`Mesh`] with a [`Material`]), its surroundings, and a timeline
 //! of [`Phase`]s. [`Scene::simulate`] integrates the equations of motion and returns a
 //! [`Trajectory`], which [`output`] writes to tables, pictures and files for ParaView.
 //!
@@ -19,19 +19,19 @@
 //! # Ok::<(), pliant::Error>(())
 //! ```
 //!
-//! The integrators stand on their own: [`solve`](mod@solve) integrates any ODE or DAE by one call, [`sundials`] is the safe layer over CVODE, IDA and ARKODE
+//! The integrators can be used alone: [`solve`](mod@solve) integrates any ODE or DAE by one call, [`sundials`] is the safe layer over CVODE, IDA and ARKODE
 //! below it, [`rk`] an explicit Runge-Kutta method, [`rosenbrock`] implicit ones without an iteration, [`central_difference`] one for systems of second order; all take the
-//! systems of [`ode`]. Without the feature `bodies` they are all there is.
+//! systems of [`ode`]. Without the feature `bodies` the crate consists of the integrators only.
 //!
 //! Modules lie in layers, from the lowest to the highest: [`integrators`], [`elements`], [`scene`](mod@scene), [`dynamics`], [`io`], [`studies`]
-//! and `apps`; each depends on those before it alone. The most used items have a short path at the root, too.
+//! and `apps`; each depends only on those before it. The most used items also have a short path at the root.
 //!
 //! SI units throughout. Formulas follow S. Hirai, *Computing Dynamic Deformation*; numbers in
 //! brackets are its equations.
 
 // docs.rs marks what needs a feature.
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// Upper rooms use more of lower ones than these do by themselves.
+// Upper layers use more of the lower ones than these do by themselves.
 #![cfg_attr(
     not(all(feature = "cli", feature = "play")),
     allow(dead_code, unused_imports, unused_macros)
@@ -60,7 +60,7 @@ pub use faer;
 #[cfg(feature = "bodies")]
 pub use num_dual;
 
-// What a first program needs, by its own name.
+// The items of a first program, at the root.
 pub use base::input::{Fraction, InputError};
 #[cfg(feature = "bodies")]
 pub use dynamics::{

@@ -1,4 +1,4 @@
-//! The house of `docs/architecture.md` is the one that stands: no room imports one that is not below it, no files
+//! `docs/architecture.md` agrees with the sources: no layer imports one that is not below it, no files
 //! import each other in a circle, and its recipes name all files that an addition touches.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -219,7 +219,7 @@ fn arrows(house: &House) -> BTreeMap<&str, BTreeSet<&str>> {
     house.values().map(|module| (module.file.as_str(), from(module))).collect()
 }
 
-/// Parts of rooms in the table of `docs/architecture.md`, each with the number of its row: "| `room/part`, ... | ...".
+/// Modules of layers in the table of `docs/architecture.md`, each with the number of its row: "| `layer/module`, ... | ...".
 fn rows() -> BTreeMap<String, usize> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md");
     let text = fs::read_to_string(path).unwrap();
@@ -232,7 +232,7 @@ fn rows() -> BTreeMap<String, usize> {
     rows
 }
 
-/// The part of a room that a file belongs to: `mesh` of `elements/mesh/cell.rs`; none for the lists of parts, such
+/// The module of a layer that a file belongs to: `elements/mesh` of `elements/mesh/cell.rs`; none for the lists of modules, such
 /// as `elements/mod.rs`.
 fn part(file: &str) -> Option<String> {
     let mut names = file.trim_end_matches(".rs").split('/');
@@ -314,7 +314,7 @@ const CALLS: [&str; 14] = [
     "powers",
 ];
 
-/// Parts of rooms that call systems of others.
+/// Modules of layers that call systems of others.
 const CALLERS: [&str; 8] = [
     "integrators/common",
     "integrators/sundials",

@@ -129,8 +129,8 @@ impl fmt::Display for MeshEstimate {
         write!(f, "{quantity} is {shown} {unit}")?;
         if !self.is_reliable() {
             return f.write_str(
-                "\nWARNING: by how much the mesh makes it off cannot be told, as dual-weighted residuals leave out more than they \
-                 tell: the mesh is so coarse that the body would move far on a better one; compare with finer cells (`halved = 1`, \
+                "\nWARNING: the error due to the mesh cannot be estimated, as dual-weighted residuals neglect more than they \
+                 include: the mesh is so coarse that the body would move far on a better one; compare with finer cells (`halved = 1`, \
                  `--refine`), or take quadratic ones in place of linear ones",
             );
         }

@@ -178,7 +178,7 @@ fn mistakes_are_on_their_lines() {
         ("kind = \"volume\"\nchamber = \"outside\"", 3, "the chambers \"inside\""),
         ("kind = \"gas-flow\"\norifice = \"leek\"", 3, "did you mean \"leak\"?"),
         ("kind = \"velocity\"\nnodes = 1\ninside = [0.0, 0.0]", 0, "found several of them"),
-        ("kind = \"velocity\"\nmarker = { nodes = 1, at = [0.0, 0.0] }", 0, "in one place"),
+        ("kind = \"velocity\"\nmarker = { nodes = 1, at = [0.0, 0.0] }", 0, "in one position"),
         ("kind = \"velocity\"\nmarker = { nodes = \"top\" }", 3, "sensor.marker.at: missing"),
         ("kind = \"stress\"", 0, "expected either nodes or point"),
         ("kind = \"stress\"\nnodes = 1\npoint = [0.0, 0.0]", 0, "found both"),

@@ -201,7 +201,7 @@ fn other_numbers_are_another_body() {
     let moment = RigidMass::new(1.0).moments(Moments::Plane(1.0));
     let aside = RigidMass::new(1.0).moments(Moments::Principal([1.0; 3])).centre([0.0, 1.0]);
     let cases = [
-        (Body::new(cuboid(), not_rigid), "only what is rigid"),
+        (Body::new(cuboid(), not_rigid), "only rigid bodies"),
         (Body::new(cuboid(), given()).region(cells(), Material::rigid(1.0)), "without regions"),
         (Body::new(cuboid(), soft).region(cells(), given()), "give a density"),
         (Body::new(apart.unwrap(), given()), "number of pieces of the mesh = 2"),

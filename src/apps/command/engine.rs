@@ -64,7 +64,7 @@ impl TaskArray<'_> {
                 Some(status) => {
                     return Err(Failure::failed(format!(
                         "hq submit ended with {status}: is a server there (hq server info)? What tasks said is in {}; \
-                         give the command again to go on",
+                         give the command again to continue",
                         logs.display()
                     )));
                 }

@@ -52,7 +52,7 @@ impl RunProgress {
                 process::exit(KILLED);
             }
             shown.suspend(|| {
-                let note = "pliant: stopping after this step, then writing what was computed; \
+                let note = "pliant: stopping after this step, then writing the results so far; \
                             press again to end at once";
                 let _ = writeln!(io::stderr(), "{note}");
             });

@@ -158,7 +158,7 @@ fn verified(training: &Training, path: &Path, quiet: bool) -> Result<(), Failure
     match most <= training.within {
         true => Ok(()),
         false => Err(Failure::failed(format!(
-            "the model is not within {}: learn it anew, from runs such as these",
+            "the model is not within {}: learn it again, with runs such as these",
             Fraction(training.within)
         ))),
     }

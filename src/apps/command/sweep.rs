@@ -270,7 +270,7 @@ impl Study<'_> {
             (Err(error), None) => Err(error.into()),
             (Ok(true), None) => Ok(()),
             (Ok(false), None) => {
-                Err(Failure::failed("interrupted: give the command again to go on"))
+                Err(Failure::failed("interrupted: give the command again to continue"))
             }
         }
     }

@@ -286,7 +286,8 @@ impl ServerState {
         let (answers, answer) = channel();
         let sent = self.requests.send(Request::Message(message, answers));
         let answer = sent.ok().and_then(|()| answer.recv().ok());
-        answer.unwrap_or_else(|| error_answer("the simulation has ended: start `pliant play` anew"))
+        answer
+            .unwrap_or_else(|| error_answer("the simulation has ended: start `pliant play` again"))
     }
 }
 

@@ -18,7 +18,7 @@ const MOST_KEYS: usize = 5;
 pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
     let limit = TIMES_WANTED * run.within;
     let said = format!(
-        "the reduced model tells an error of {} of the largest displacement (limit: {})",
+        "the estimated error of the reduced model is {} of the largest displacement (limit: {})",
         percent(run.estimated_error),
         percent(limit)
     );

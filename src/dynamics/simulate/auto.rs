@@ -1,4 +1,4 @@
-//! Which method integrates a phase, and why.
+//! Automatic choice of the method that integrates a phase.
 //!
 //! The rules come from charts of speed against accuracy over Hirai's scenes: diagonally implicit Runge-Kutta
 //! methods lead where vibrations are lightly damped, as they are L-stable and may step over them; BDF leads
@@ -281,7 +281,7 @@ impl Plan {
             _ => return None,
         };
         (worth * step < LOSING * self.implicit_step).then(|| {
-            let reason = format!("steps of {step:.1e} s lead less far for what they cost");
+            let reason = format!("steps of {step:.1e} s advance less per cost");
             let plan = self.followed_by(Method::Arkode, self.asked.max_order, &reason);
             Self { explicit_step, central_step, ..plan }
         })

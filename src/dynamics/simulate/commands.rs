@@ -1,4 +1,4 @@
-//! Commands: what a program changes while a scene is in motion.
+//! Commands: changes by a program while a scene is in motion.
 
 use super::changes::Change;
 use super::simulation::Simulation;
@@ -30,7 +30,7 @@ impl Simulation {
         self.set_named(Quantity::Pressure, chamber, pressure.into())
     }
 
-    /// Sets how far an orifice is open, from 0 (shut) to 1, in place of the present opening.
+    /// Sets the opening of an orifice, from 0 (shut) to 1, in place of the present one.
     ///
     /// # Errors
     /// A name that no orifice has; a number that is not from 0 to 1.
@@ -43,7 +43,7 @@ impl Simulation {
         self.set_named(Quantity::Opening, orifice, opening)
     }
 
-    /// Sets the flow (m^3/s) of liquid into a chamber, in place of the present one; below 0 it flows out.
+    /// Sets the flow (m^3/s) of liquid into a chamber, in place of the present one; negative for outflow.
     ///
     /// # Errors
     /// A name that no chamber with a liquid has; numbers that are not finite; a method without unknowns for amounts (`central-difference`).
@@ -53,12 +53,12 @@ impl Simulation {
     }
 
     /// Sets the force (N) of the actuator of a spring, in place of the present one; a positive one extends
-    /// the spring. Of a [cable](crate::Spring::cable) it is the tension, and of one on a winch the length (m) that is drawn in; of a
-    /// [muscle](crate::Muscle) it is the stress (Pa) by which it pulls, of a [growth](crate::Growth) the strain (1).
+    /// the spring. For a [cable](crate::Spring::cable) it is the tension, for one on a winch the length (m) that is drawn in; for a
+    /// [muscle](crate::Muscle) the active stress (Pa), for a [growth](crate::Growth) the strain (1).
     ///
     /// # Errors
-    /// A name that no spring, no muscle and no growth has; numbers that are not finite; a stress that [Hill's law](crate::Hill) of a muscle does not
-    /// have.
+    /// A name that no spring, no muscle and no growth has; numbers that are not finite; a stress outside of the range of [Hill's law](crate::Hill) of a
+    /// muscle.
     pub fn actuate(&mut self, spring: &str, force: impl Into<Signal>) -> Result<(), Error> {
         let force = force.into();
         let number = self.scene().actuator_number(spring, "actuation")?;
@@ -106,7 +106,7 @@ impl Simulation {
         self.set_load(nodes.into(), VectorSignal::TimeTable(table))
     }
 
-    /// Sets the magnetic field (T) that acts on magnets, one component per dimension, in place of the present one; a gradient of it stays.
+    /// Sets the magnetic field (T) that acts on magnets, one component per dimension, in place of the present one; its gradient does not change.
     ///
     /// # Errors
     /// A scene without magnets, a wrong number of components, numbers that are not finite.
@@ -115,7 +115,7 @@ impl Simulation {
         self.set(Input::new(Quantity::Field, Target::Everything, field))
     }
 
-    /// Sets an input of a [device](crate::Device), by the name of the one and the word of the other, in place of the present value.
+    /// Sets an input of a [device](crate::Device), by the name of the device and the word of the input, in place of the present value.
     ///
     /// # Errors
     /// A name that no device has, a word that none of its inputs has, a value of another rank, numbers that are not finite.

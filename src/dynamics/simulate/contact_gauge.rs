@@ -57,7 +57,8 @@ impl ContactGauge {
             (None, Some(name), _) => body.part_named(name, "body")?.nodes.collect(),
             (None, None, ContactSource::Obstacle(_)) => (0..count).collect(),
             (None, None, ContactSource::Touch(_)) => {
-                let help = "a touch acts on both sides alike: name the body or the nodes on which it is read";
+                let help =
+                    "a touch acts on both sides: name the body or the nodes on which it is read";
                 return Err(InputError::new("body", "missing", help));
             }
         };

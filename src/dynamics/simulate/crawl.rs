@@ -1,4 +1,4 @@
-//! Steps that are far too short for a phase: told while the run goes on, with their likely cause and what to try.
+//! Steps that are far too short for a phase: reported during the run, with their likely cause and what to try.
 
 use crate::base::input::four_digits;
 use crate::dynamics::report::Counts;
@@ -23,7 +23,7 @@ pub(super) struct Crawl {
 }
 
 impl Crawl {
-    /// Adds a step of a phase of a `length` (s); `touches` where surfaces do. Returns what is to be told now.
+    /// Adds a step of a phase of a `length` (s); `touches` where surfaces do. Returns the notice that is due now.
     pub(super) fn add(
         &mut self,
         [start, end]: [f64; 2],
@@ -109,7 +109,7 @@ mod tests {
         assert!(told([0, 0]).contains("9.0e-10 s long") && told([0, 0]).contains("sticking_speed"));
     }
 
-    /// It is told once.
+    /// It is reported once.
     #[test]
     fn it_is_told_once() {
         let mut crawl = Crawl::default();

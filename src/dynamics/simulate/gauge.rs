@@ -1,4 +1,4 @@
-//! How the quantities of a scene are read: what a [`Reading`] names is looked up once, before the run.
+//! Functions that read the quantities of a scene: the names of a [`Reading`] are looked up once, before the run.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -271,7 +271,7 @@ fn line(scene: &Scene, ends: &[Selection; 2]) -> Result<[Vec<usize>; 2], InputEr
     Ok([from, to])
 }
 
-/// Strain or stress at a place, with that of the `branches`.
+/// Strain or stress at a point, with that of the `branches`.
 fn field(
     scene: &Scene,
     place: &FieldPoint,

@@ -15,7 +15,7 @@ impl Reading {
     /// The function that reads R^T (a - g): a of the middle of `nodes`, or of the centre of mass of what else is read, with their rotation R.
     ///
     /// # Errors
-    /// Nodes that do not exist, or do not tell how they turn.
+    /// Nodes that do not exist, or that do not determine a rotation.
     pub(super) fn accelerometer_gauge(
         &self,
         scene: &Scene,

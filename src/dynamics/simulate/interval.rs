@@ -1,4 +1,4 @@
-//! Intervals: the parts of a phase that are integrated without a new start, and what may end them.
+//! Intervals: the parts of a phase that are integrated without a restart, and the events that may end them.
 //!
 //! They end at the end of the phase, at kinks of prescribed signals (so that no pulse is skipped), at located
 //! contact events, at points of the path of an obstacle (so that in its frame the motion within a step is one

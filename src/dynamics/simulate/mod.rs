@@ -135,8 +135,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// As [`simulate`](Self::simulate); a run that was stopped ends with [`Error::Integration`],
-    /// too, which says so: [`is_interruption`](crate::IntegrationFailure::is_interruption).
+    /// As [`simulate`](Self::simulate); a run that was stopped also ends with [`Error::Integration`],
+    /// for which this holds: [`is_interruption`](crate::IntegrationFailure::is_interruption).
     pub fn simulate_with(
         &self,
         settings: &Settings,

@@ -20,7 +20,7 @@ pub struct Progress<'a> {
     pub step: f64,
     /// Order of the last step.
     pub order: u32,
-    /// Why steps are far too short for the phase, and what to try, once a thousand of them were.
+    /// The cause of steps that are far too short for the phase, with what to try; none before a thousand such steps.
     pub notice: Option<&'a str>,
     /// The samples so far. Where a method could not be trusted, the run goes back and its samples are
     /// discarded.

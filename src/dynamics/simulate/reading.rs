@@ -64,7 +64,7 @@ pub(super) enum ReadingKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum OfContact {
     Force,
-    /// Of what is in touch.
+    /// The area in contact.
     Area,
     /// The largest one.
     Pressure,
@@ -94,22 +94,22 @@ pub(super) enum FieldPoint {
 }
 
 impl Reading {
-    /// Where nodes, or another [place](Spot), are (m).
+    /// Position (m) of nodes, or of another [spot](Spot).
     pub fn position(place: impl Into<Spot>) -> Self {
         ReadingKind::Position(place.into()).into()
     }
 
-    /// How far nodes, or another [place](Spot), are from their undeformed positions (m).
+    /// Displacement (m) of nodes, or of another [spot](Spot), from the undeformed position.
     pub fn displacement(place: impl Into<Spot>) -> Self {
         ReadingKind::Displacement(place.into()).into()
     }
 
-    /// How fast nodes, or another [place](Spot), move (m/s).
+    /// Velocity (m/s) of nodes, or of another [spot](Spot).
     pub fn velocity(place: impl Into<Spot>) -> Self {
         ReadingKind::Velocity(place.into()).into()
     }
 
-    /// How the velocity of nodes, or of another [place](Spot), changes (m/s^2): what the equations of motion say in the state of a sample.
+    /// Acceleration (m/s^2) of nodes, or of another [spot](Spot), by the equations of motion in the state of a sample.
     /// In equilibria it is 0.
     pub fn acceleration(place: impl Into<Spot>) -> Self {
         ReadingKind::Acceleration(place.into()).into()
@@ -185,8 +185,8 @@ impl Reading {
         ReadingKind::Contact(OfContact::Pressure, ContactSource::Touch(touch.into()), None).into()
     }
 
-    /// The least distance (m) of the surfaces of bodies that [touch](crate::Touch), up to that from which on nothing
-    /// acts.
+    /// The least gap (m) between the surfaces of bodies of a [touch](crate::Touch), at most its contact
+    /// distance.
     pub fn gap(touch: impl Into<String>) -> Self {
         ReadingKind::Gap(touch.into()).into()
     }
@@ -267,9 +267,9 @@ impl Reading {
     /// Rotation (rad) of a body as a whole, or [of some nodes](Self::on), from the undeformed shape.
     ///
     /// It is the rotation that brings the undeformed shape nearest to the present one, in the mean square over the mass of a
-    /// body, or over nodes that count alike. In the plane it is an angle, counter-clockwise, continuous over whole turns like
+    /// body, or over nodes with equal weights. In the plane it is an angle, counter-clockwise, continuous over whole turns like
     /// [`angle`](Self::angle) (and that of [`Trajectory::rotation`](crate::Trajectory::rotation) up to these); in space a vector along the axis, of a length
-    /// between 0 and pi. Nodes in one place, in space on one line, do not tell it.
+    /// between 0 and pi. It is not defined for nodes in one position, in space on one line.
     pub fn rotation() -> Self {
         ReadingKind::Rotation(None).into()
     }
@@ -277,21 +277,21 @@ impl Reading {
     /// Angular velocity (rad/s) of a body as a whole, or [of some nodes](Self::on): in the plane a number, counter-clockwise, in
     /// space a vector.
     ///
-    /// It is the rate at which the [rotation](Self::rotation) R changes, omega x = R' R^T. Of what moves as a rigid body that is inertia^-1
-    /// times angular momentum, whatever the weights.
+    /// It is the rate at which the [rotation](Self::rotation) R changes, omega x = R' R^T. For a rigid motion it is inertia^-1
+    /// times angular momentum, for any weights.
     pub fn angular_velocity() -> Self {
         ReadingKind::AngularVelocity(None).into()
     }
 
-    /// Rate (rad/s^2) of the [angular velocity](Self::angular_velocity), by the accelerations that the equations of motion say; 0 in
+    /// Rate (rad/s^2) of the [angular velocity](Self::angular_velocity), from the accelerations of the equations of motion; 0 in
     /// equilibria.
     pub fn angular_acceleration() -> Self {
         ReadingKind::AngularAcceleration(None).into()
     }
 
     /// The reading of an accelerometer (m/s^2) that is fixed to a body, or to [some nodes](Self::on), in axes that turn with these: R^T (a - g)
-    /// with their [rotation](Self::rotation) R and the acceleration a of their middle, of a body its centre of mass. What falls freely reads
-    /// 0, what is at rest g upwards.
+    /// with their [rotation](Self::rotation) R and the acceleration a of their mean position, for a body its centre of mass. In free fall it reads
+    /// 0, at rest g upwards.
     pub fn accelerometer() -> Self {
         ReadingKind::Accelerometer(None).into()
     }
@@ -307,7 +307,7 @@ impl Reading {
         ReadingKind::Momentum.into()
     }
 
-    /// Of one of several bodies: its centre of mass, how it turns, its momentum, what a touch or a fluid does to it. Default: of all together.
+    /// The reading of one of several bodies: its centre of mass, rotation and momentum, the force of a touch or a fluid on it. Default: that of all together.
     pub fn of_body(mut self, name: impl Into<String>) -> Self {
         self.body = Some(name.into());
         self

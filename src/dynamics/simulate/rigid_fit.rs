@@ -19,7 +19,7 @@ use crate::base::rotation::{nearest_rotation, plane_rotation};
 use crate::elements::body::Part;
 use crate::elements::mesh::Mesh;
 
-/// The least inertia about any axis, as a part of that about all, of nodes that tell how they turn.
+/// The least inertia about any axis, as a part of that about all, of nodes that determine a rotation.
 const SLENDER: f64 = 1e-12;
 
 /// Nodes with weights, by which a rotation is found.
@@ -44,7 +44,7 @@ impl RigidFit {
     /// That of `nodes` (counted from 0), which count alike.
     ///
     /// # Errors
-    /// Nodes that do not tell how they turn.
+    /// Nodes that do not determine a rotation.
     pub(super) fn of_nodes(mesh: &Mesh, nodes: Vec<usize>) -> Result<Self, InputError> {
         let d = mesh.dimension();
         let middle = super::view::mean(&nodes, mesh.positions(), d);
@@ -68,8 +68,12 @@ impl RigidFit {
     fn checked(self, mesh: &Mesh) -> Result<Self, InputError> {
         let help = match self.dimension {
             1 => "nothing turns on a line",
-            2 => "they are in one place, and do not tell how they turn: name nodes around it",
-            _ => "they are on a line, and do not tell how they turn about it: name nodes beside it",
+            2 => {
+                "they are in one position, which does not determine a rotation: name nodes around it"
+            }
+            _ => {
+                "they are on a line, which does not determine the rotation about it: name nodes off the line"
+            }
         };
         let inertia = inertia(self.correlation(mesh.positions()), self.dimension);
         let is_slender = inertia.symmetric_eigenvalues().min() <= SLENDER * inertia.trace()

@@ -474,7 +474,7 @@ impl Run {
         }
     }
 
-    /// How the motion was computed so far, with what a reduced model tells of its error.
+    /// Report of the motion so far, with the error estimate of a reduced model.
     pub(super) fn report(&self) -> Report {
         if let Some(checks) = &self.reduced {
             let equations = || self.full_equations(&self.phase, &self.state).ok();
@@ -488,7 +488,7 @@ impl Run {
         self.phase_run.report(&self.phase, self.time, &self.integration)
     }
 
-    /// The same, with what is known already of the error of a reduced model: the rest takes factorizations with all unknowns.
+    /// The same, with the part of the error estimate of a reduced model that is known already: the rest takes factorizations with all unknowns.
     pub(super) fn settled_report(&self) -> Report {
         let mut report = self.trajectory.report.clone();
         let phase = self.phase_report();
@@ -557,7 +557,7 @@ impl Run {
         self.failure(source, step)
     }
 
-    /// Adds to a sample what does not follow from the equations.
+    /// Adds to a sample the quantities that do not follow from the equations.
     pub(super) fn complete(&self, sample: &mut Sample) {
         let own = (&*self.scene, &*self.gauges);
         let sensors = (&self.sensors, &self.angles);

@@ -1,4 +1,4 @@
-//! When the motion is sampled, and what is read then.
+//! Sampling times of a motion, and the quantities that are read at them.
 
 use std::sync::Arc;
 
@@ -61,7 +61,7 @@ impl Sampling {
         Self { times: Times::At(times.into()), ..Self::default() }
     }
 
-    /// Whether a run of `scene` takes a sample at this `time` (s), to the last digit.
+    /// Whether a run of `scene` has a sample at exactly this `time` (s).
     pub fn takes(&self, scene: &Scene, time: f64) -> bool {
         let ends = scene.phases().iter().map(Phase::end);
         time == 0.0 || ends.into_iter().any(|end| end == time) || self.times.have(time)
@@ -101,8 +101,8 @@ impl Sampling {
         !self.times.have(time) && self.also.contains(&time)
     }
 
-    /// Adds a sensor: a number that `reading` returns for each sample, in addition to what samples always
-    /// hold ([`Sample::sensors`], [`Trajectory::sensors`](crate::Trajectory::sensors); a column of tables).
+    /// Adds a sensor: a number that `reading` returns for each sample, in addition to the standard contents of
+    /// samples ([`Sample::sensors`], [`Trajectory::sensors`](crate::Trajectory::sensors); a column of tables).
     ///
     /// ```
     /// use pliant::{Sampling, Settings, samples};

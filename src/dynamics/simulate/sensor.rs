@@ -37,7 +37,7 @@ pub(super) enum SensorKind {
 /// Adds the numbers of a sensor to those of a sample.
 type Read = dyn Fn(&View, &Sample, &mut Vec<f64>) + Send + Sync;
 
-/// The sensors of a run in its scene: what they read, and how.
+/// The sensors of a run in its scene: their quantities, and the functions that read them.
 #[derive(Clone, Default)]
 pub(super) struct Sensors {
     pub(super) quantities: Vec<Quantity>,

@@ -22,10 +22,10 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::scene::settings::Settings;
 use crate::scene::timeline::Scene;
 
-/// A scene in motion that is driven by a program.
+/// A scene in motion under the control of a program.
 ///
-/// The program advances time, reads the motion, gives commands (pressures, forces, what is held), and returns
-/// to states that it kept.
+/// The program advances time, reads the motion, gives commands (pressures, forces, constraints), and returns
+/// to earlier states.
 ///
 /// ```
 /// use pliant::{Settings, samples};
@@ -42,11 +42,11 @@ use crate::scene::timeline::Scene;
 ///
 /// Between commands it moves as in [`Scene::simulate`]: by the phases of the scene, with steps as long as the
 /// tolerances allow. [`advance_to`](Self::advance_to) interpolates the motion between the ends of steps, so
-/// that reading it changes nothing. A command takes effect exactly at the present time; the first advance
+/// that reading does not affect it. A command takes effect exactly at the present time; the first advance
 /// after a command also ends a step at the requested time.
 ///
-/// After an error other than [`Error::Integration`] the simulation is as it was before the call; after one of
-/// those it remains where the integrator gave up, and after an error of an event, where the event was
+/// After an error other than [`Error::Integration`] the simulation is as it was before the call; after
+/// that error it remains where the integrator failed, and after an error of an event, where the event was
 /// evaluated. A panic of a function that was given to the scene or the simulation becomes such an error, too.
 ///
 /// [`Method::Auto`](crate::Method::Auto) goes back where a method has created energy, and continues with
@@ -157,7 +157,7 @@ impl Simulation {
         self.run.report()
     }
 
-    /// The same without what is not known yet of the error of a reduced model, as that takes longer than a picture may.
+    /// The same with the error estimate of a reduced model as far as it is known: the rest takes too long for a live picture.
     #[cfg(feature = "play")]
     pub(crate) fn settled_report(&self) -> Report {
         self.run.settled_report()
@@ -166,7 +166,7 @@ impl Simulation {
     /// Takes samples of the motion from the end of the present step on, which are kept in the [`trajectory`](Self::trajectory).
     ///
     /// # Errors
-    /// Sampling times that cannot be used; sensors for what the scene does not have.
+    /// Sampling times that cannot be used; sensors of components that the scene does not have.
     pub fn record(&mut self, sampling: &Sampling) -> Result<(), InputError> {
         let scene = &self.run.scene;
         let sensors = sampling.sensors(scene)?;
@@ -184,7 +184,7 @@ impl Simulation {
         self.run.into_trajectory()
     }
 
-    /// Takes one step of the integrator. `false` at the end of the scene, where nothing is left.
+    /// Takes one step of the integrator. Returns `false` at the end of the scene.
     ///
     /// # Errors
     /// [`Error::Integration`] if the integrator gives up.
@@ -250,7 +250,7 @@ impl Simulation {
         self.run.last_step()
     }
 
-    /// Why steps are far too short for the present phase, and what to try, once a thousand of them were.
+    /// The cause of steps that are far too short for the present phase, with what to try; none before a thousand such steps.
     pub fn notice(&self) -> Option<&str> {
         self.run.notice()
     }
@@ -310,7 +310,7 @@ impl Simulation {
     /// [`advance_to`](Self::advance_to).
     ///
     /// # Errors
-    /// A period that is not above 0; what the controller returns; otherwise as
+    /// A period that is not above 0; the error that the controller returns; otherwise as
     /// [`advance_to`](Self::advance_to).
     pub fn control(
         &mut self,
@@ -382,9 +382,9 @@ impl Simulation {
         Ok(())
     }
 
-    /// An independent simulation that begins with the present state and the commands in force.
+    /// An independent simulation that starts from the present state with the commands in force.
     ///
-    /// It serves to try what would happen, on another thread if needed. Body, matrices and their orderings
+    /// It serves to try other commands, on another thread if needed. Body, matrices and their orderings
     /// are shared.
     ///
     /// # Errors

@@ -2,9 +2,9 @@
 
 use crate::elements::mesh::Selection;
 
-/// A place whose motion is read: the middle of nodes, a point of a body, or a marker beside it.
+/// A spot whose motion is read: the mean position of nodes, a point of a body, or a marker outside of it.
 ///
-/// Selections of nodes are places by themselves.
+/// A selection of nodes converts to a spot.
 ///
 /// ```
 /// use pliant::simulate::{Reading, Spot};
@@ -43,8 +43,8 @@ pub(super) enum Motion {
 }
 
 impl Spot {
-    /// The point of the body, within a cell or on its surface, whose undeformed position is `place` (m). It moves with the body, whatever
-    /// nodes are near, so that a finer mesh has the same place: by the shape functions of its cell.
+    /// The point of the body, within a cell or on its surface, whose undeformed position is `place` (m). It moves with the body by the shape functions of its
+    /// cell, so that it is the same point on a finer mesh.
     pub fn inside(place: impl Into<Vec<f64>>) -> Self {
         Self(At::Inside(place.into()))
     }
@@ -52,7 +52,7 @@ impl Spot {
     /// The point at `place` (m) in the undeformed shape that moves with `nodes` as if both were one rigid body: a marker on a post or a
     /// plate, which need not be meshed.
     ///
-    /// The rigid motion is the one nearest to that of the nodes, in the mean square, all of which count alike: their middle, and
+    /// The rigid motion is the best fit to that of the nodes, in the mean square with equal weights: their mean position, and
     /// the [rotation](super::Reading::rotation) about it.
     pub fn marker(nodes: impl Into<Selection>, place: impl Into<Vec<f64>>) -> Self {
         Self(At::Marker(nodes.into(), place.into()))

@@ -34,7 +34,7 @@ impl Reading {
     /// The function that reads the `motion` of a place.
     ///
     /// # Errors
-    /// Nodes that do not exist; a point outside the body; a marker of nodes that do not tell how it turns.
+    /// Nodes that do not exist; a point outside the body; a marker of nodes that do not determine its rotation.
     pub(super) fn of_spot(
         &self,
         scene: &Scene,

@@ -1,4 +1,4 @@
-//! Methods that take far more steps than expected: another one is tried in their place, and kept if it leads farther for
+//! Methods that take far more steps than expected: another one is tried in their place, and kept if it advances farther for
 //! the same cost.
 //!
 //! The cause of the short steps does not matter. A known one of BDF are undamped vibrations: they

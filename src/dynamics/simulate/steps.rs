@@ -1,4 +1,4 @@
-//! The steps of an interval: how far they go, what makes them doubtful, and the samples within them.
+//! The steps of an interval: their ends, checks of their results, and the samples within them.
 //!
 //! A rise of the energy balance of more than a hundredth of the largest energy is a warning in every run.
 //! `Method::Auto` then goes back to the last state whose balance was off by less than a tenth of that, and
@@ -238,7 +238,7 @@ impl Run {
         Ok(if event.is_some() { Outcome::CutOff(step) } else { Outcome::Taken(step) })
     }
 
-    /// Keeps now and then what a reduced model leaves over.
+    /// Keeps the residual forces of a reduced model at some of the steps.
     fn check_reduced(&mut self, system: &mut dyn PhaseSystem) -> Result<(), Failure> {
         let phase = [self.phase.until - self.phase_length(), self.phase.until];
         let left_over = system.left_over(self.time, &self.state, phase)?;

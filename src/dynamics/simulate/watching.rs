@@ -43,7 +43,7 @@ const AHEAD: f64 = 1e-6;
 impl Simulation {
     /// Watches an `event`: whenever its sign changes in the given direction, `action` is called.
     ///
-    /// It is called at exactly that time, to the round-off of the step that it lies in. It may read the
+    /// It is called at exactly that time, to round-off within the step. It may read the
     /// motion, give commands and change the state; [`ControlFlow::Break`] stops the advance there.
     ///
     /// Signs are compared eight times in each step, as by [`advance_until`](Self::advance_until). If several
@@ -56,7 +56,7 @@ impl Simulation {
     /// speed, and the events still to come would all lie within a millionth of the time since the first, or
     /// the motion goes back by less than the tolerances can resolve. Time cannot advance beyond them.
     /// Therefore the action itself has to bring such a motion to rest: below some speed it
-    /// [holds](Self::hold) what has landed, lets an obstacle [act](Self::contact), or stops the advance.
+    /// [holds](Self::hold) the nodes that have landed, lets an obstacle [act](Self::contact), or stops the advance.
     ///
     /// ```
     /// use std::ops::ControlFlow;

@@ -258,8 +258,7 @@ impl Body {
                     return wrong("direction", "given", "rods grow along their axis: leave it out");
                 }
                 Some(rod) if rod.relaxes() => {
-                    let help =
-                        "what relaxes does not know of growth: leave the Maxwell branches out";
+                    let help = "Maxwell branches do not support growth: remove them";
                     return wrong("material.branch", "given", help);
                 }
                 Some(rod) => {
@@ -280,7 +279,7 @@ impl Body {
                 return wrong("cell", &number, "it is rigid: name cells that are soft");
             }
             if own.regions.branches().next().is_some() {
-                let help = "what relaxes does not know of growth: leave the Maxwell branches out";
+                let help = "Maxwell branches do not support growth: remove them";
                 return wrong("material.branch", "given", help);
             }
             if !own.grows_alike(course) {

@@ -165,7 +165,7 @@ impl Regions {
             let Substance { material, law, mass_damping, branches, fibres, is_rigid, .. } =
                 substance;
             if *is_rigid && !(branches.is_empty() && fibres.is_empty()) {
-                let help = "what is rigid has no branches and no fibres: leave them out";
+                let help = "a rigid material has no branches and no fibres: remove them";
                 return Err(InputError::new("material.rigid", true, help));
             }
             if *is_rigid && strain == Strain::Cauchy {

@@ -85,7 +85,7 @@ impl Whole {
         match edges.try_inverse().filter(|_| !is_flat) {
             Some(inverse) => Ok(Self { frame: frame.clone(), origin, inverse }),
             None => {
-                let help = "all of its nodes are on a plane or on a line, so that they do not tell how it turns";
+                let help = "all of its nodes are on a plane or on a line, which does not determine its rotation";
                 Err(InputError::new("mesh", "flat", help))
             }
         }

@@ -270,7 +270,7 @@ impl Substance {
             mass.validate()?;
             if !self.is_rigid {
                 let help =
-                    "only what is rigid has a mass by numbers: give a density, or rigid = true";
+                    "only rigid bodies have a prescribed mass: give a density, or rigid = true";
                 return Err(InputError::new("material.mass", mass.mass, help));
             }
         }

@@ -77,7 +77,7 @@ impl Flaw {
             ],
             Self::Twisted => [
                 "are twisted or folded, with corners of both orientations",
-                "put their nodes in order, or mesh the place anew",
+                "put their nodes in order, or mesh this part again",
             ],
             Self::Curved => [
                 "have sides so curved that they are inside out in part",

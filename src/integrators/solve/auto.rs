@@ -1,4 +1,4 @@
-//! The engine of [`Method::Auto`]: one method at a time, from step to step the one that leads farther for its work.
+//! The engine of [`Method::Auto`]: one method at a time, from step to step the one that advances farther per work.
 //!
 //! It begins with the explicit method, which notices where stability limits its steps; or with the implicit one where its steps cost no more, as
 //! those of many unknowns with few entries, and the fastest rate at the start shows that stability would limit the others. An implicit one is then tried for some steps, if as

@@ -1,4 +1,4 @@
-//! Which steps are looked at more closely.
+//! Steps that are examined more closely.
 
 /// Steps that may have passed a switch.
 #[derive(Debug, Default)]

@@ -1,4 +1,4 @@
-//! Which of the methods of [`Method::Auto`](super::Method::Auto) leads farther for its work.
+//! Comparison of the methods of [`Method::Auto`](super::Method::Auto) by their advance per work.
 //!
 //! Work is counted, never measured: each step of a method has a cost in numbers of operations, a function of the number of unknowns and of
 //! the stored entries of the Jacobian, which fits times of the standard problems (`docs/notes/automatic-choices.md`).

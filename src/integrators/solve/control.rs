@@ -13,7 +13,7 @@ use crate::base::input::InputError;
 use crate::integrators::common::check_time;
 
 impl Run<'_> {
-    /// Goes to time `t`, or to the end of the run if that comes first, and returns the events on the way.
+    /// Integrates to time `t`, or to the end of the run if that comes first, and returns the events up to there.
     ///
     /// A step ends there, and the next one continues from it without a new start of the integrator.
     ///
@@ -101,11 +101,11 @@ impl Run<'_> {
         })
     }
 
-    /// Goes back, or on, to where the run stood when it was [saved](Self::save): with its state, parameters, events and
-    /// breaks. Counters of cost and limits go on.
+    /// Returns to the time at which the run was [saved](Self::save), which may lie behind or ahead, with its state, parameters, events and
+    /// breaks. Statistics and limits continue to count.
     ///
     /// # Errors
-    /// [`Reason::Input`] for what was saved of another problem, or lies outside the span.
+    /// [`Reason::Input`] if it was saved from another problem, or lies outside the span.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), Reason> {
         let lengths = [self.y.len(), self.yp.len(), self.events.len(), self.quadratures[0].len()];
         saved.check(lengths)?;

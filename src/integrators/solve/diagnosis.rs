@@ -1,4 +1,4 @@
-//! Why a run takes so many steps, by a look at the equations where it has come to.
+//! The cause of a large number of steps, from the equations at the present state.
 
 use super::{
     method::Limit,
@@ -16,11 +16,11 @@ const SHRUNK: f64 = 1e-2;
 const UNFOLLOWED: f64 = 30.0;
 
 impl Run<'_> {
-    /// A warning about the steps, where there are a thousand or more: that the equations switch to and fro, that stability, not accuracy,
-    /// limits their size, or that they lead nowhere.
+    /// A warning about the steps, after a thousand or more: the equations switch to and fro, stability and not accuracy
+    /// limits the step size, or the run makes no progress.
     ///
-    /// It takes up to 20 evaluations of the right-hand side at states nearby; at the end of the span none, as there it is only what Dormand
-    /// and Prince's method has seen on the way.
+    /// It takes up to 20 evaluations of the right-hand side at states nearby; at the end of the span none, where only the detection
+    /// by Dormand and Prince's method during the run is used.
     #[must_use]
     pub fn notice(&mut self) -> Option<String> {
         let steps = self.steps();

@@ -12,10 +12,10 @@ use std::{
 
 use super::error::Error;
 
-/// The results of `count` members, computed on all cores: `member(k)` makes and solves the problem of number k, with the method, span and
+/// The results of `count` members, computed on all cores: `member(k)` creates and solves the problem of number k, with the method, span and
 /// options that it chooses, on the thread that runs it.
 ///
-/// Each has its own result, whatever happens to the others: one that panics has [`Error::Panicked`] with its message. Results are in the
+/// Each has its own result, independent of the others: one that panics has [`Error::Panicked`] with its message. Results are in the
 /// order of the numbers. A member is computed by one thread from beginning to end, so results do not depend on the number of threads.
 ///
 /// ```

@@ -14,7 +14,7 @@ debug_in_words!(Error, Stopped, Reason);
 #[derive(Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A value that was handed in cannot be used; nothing was computed.
+    /// An input that cannot be used; nothing was computed.
     #[error(transparent)]
     Input(#[from] InputError),
 
@@ -35,12 +35,12 @@ pub struct Stopped {
     pub solution: Solution,
 }
 
-/// Why a run stopped, or did not begin.
+/// The reason why a run stopped, or did not start.
 #[non_exhaustive]
 pub enum Reason {
     /// A value that was handed in cannot be used.
     Input(InputError),
-    /// The integrator could not go on.
+    /// The integrator failed.
     Failed(common::Error),
     /// [`Options::max_steps`](super::Options::max_steps) steps were taken.
     Steps(u64),

@@ -36,18 +36,18 @@ pub(super) type Action<'a> = Box<dyn FnMut(&mut Jump<'_>) + Send + 'a>;
 /// Without an action an event is only recorded in the [`Solution`](super::Solution), and the integration
 /// continues with the same steps. It is located on the interpolant of the step, to rounding.
 ///
-/// * Between the ends of each step g is evaluated in [`samples`](Self::samples) places, and minima of |g| are
+/// * Between the ends of each step g is evaluated at [`samples`](Self::samples) times, and minima of |g| are
 ///   searched, so that two roots within one step are found, too.
 /// * A g that starts at zero is no event. It may become one when g returns to zero after it has left it.
 /// * A g that touches zero without a change of sign is an event only with [`touching`](Self::touching).
 /// * Where g is not a number, roots before that are found; without one it is an error
-///   ([`Reason::Event`](super::Reason::Event)). Where the equations are not defined behind an event that ends the run or has
-///   an action, it takes place where the state has come to it within the tolerances.
+///   ([`Reason::Event`](super::Reason::Event)). Where the equations are not defined beyond an event that ends the run or has
+///   an action, it occurs when the state has reached it within the tolerances.
 /// * When an action makes g jump across zero, that is no event.
-/// * Where an action lets the solution rest at g = 0, as by equations that hold it there, rounding is no event: the
-///   next one is met after g has left zero by more than the tolerances of the state make of it.
+/// * Where an action lets the solution rest at g = 0, as by equations that hold it there, round-off causes no event: the
+///   next one occurs after g has left zero by more than its change under the tolerances of the state.
 /// * Times are events, too: [`every`](Self::every) period, or [`at`](Self::at) one time. A sine of time as
-///   the function loses ticks where steps pass several periods.
+///   the function would miss ticks where steps span several periods.
 /// * An action that turns the solution back, as at a floor, may be called at ever shorter intervals (Zeno's
 ///   paradox): such events [accumulate](Self::at_accumulation).
 pub struct Event<'a> {
@@ -120,7 +120,7 @@ impl<'a> Event<'a> {
         }
     }
 
-    /// A clock: the event takes place at the multiples of `period` within the span, after its start.
+    /// A clock: the event occurs at the multiples of `period` within the span, after its start.
     ///
     /// Its times are exact, k `period` to rounding, and none is lost. With an [action](Self::action) a step ends just
     /// before each, as at a [break](super::Problem::breaks), and equations may switch there; without one it is recorded.
@@ -169,7 +169,7 @@ impl<'a> Event<'a> {
         self
     }
 
-    /// The event takes place once, and then no more until an action [arms](Jump::arm) it again. (One that is
+    /// The event occurs once, and not again until an action [arms](Jump::arm) it. (One that is
     /// [terminal](Self::terminal) ends the run.)
     #[must_use]
     pub fn once(mut self) -> Self {
@@ -218,8 +218,8 @@ impl<'a> Event<'a> {
 
     /// Action where this event accumulates.
     ///
-    /// An event accumulates where its action turns the solution back ever faster, like a ball that bounces
-    /// and loses a part of its speed each time, until the change between two events is less than the errors of
+    /// An event accumulates where its action turns the solution back at ever shorter intervals, as for a ball that
+    /// loses a fraction of its speed at each bounce, until the change between two events is less than the errors of
     /// the solution. The action given here brings the solution to rest and keeps it there, by a parameter of
     /// the equations, say, or [ends](Jump::end) the run. It is called at the time of the last event, in the
     /// state after the jump.
@@ -267,7 +267,7 @@ impl<'a> Event<'a> {
         self
     }
 
-    /// In how many places of a step g is evaluated. Default: 4.
+    /// Number of times in a step at which g is evaluated. Default: 4.
     ///
     /// More are needed for a g that changes faster than the solution, such as a function of time that does
     /// not occur in the equations.
@@ -382,13 +382,13 @@ impl<'j> Jump<'j> {
         Self { t, y, yp, p, ends: false, armed: Vec::new() }
     }
 
-    /// Lets the event of this number, in the order of [`Problem::event`](super::Problem::event), take place
-    /// again after it was [disarmed](Self::disarm) or happened [once](Event::once).
+    /// Arms the event of this number, in the order of [`Problem::event`](super::Problem::event),
+    /// after it was [disarmed](Self::disarm) or occurred [once](Event::once).
     pub fn arm(&mut self, event: usize) {
         self.armed.push((event, true));
     }
 
-    /// Lets the event of this number take place no more until it is armed: nothing is recorded, no action
+    /// Disarms the event of this number until it is armed again: it is not recorded, and its action is not
     /// called.
     pub fn disarm(&mut self, event: usize) {
         self.armed.push((event, false));

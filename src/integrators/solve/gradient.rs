@@ -27,7 +27,7 @@ use crate::integrators::{
 /// [`Method::Ida`]).
 ///
 /// Where events act, the times of the jumps depend on the parameters, too, and so does the end of a run that
-/// an event ends; all of that is in the gradient. Equations and functionals that switch by themselves need
+/// an event ends; all of that is in the gradient. Discontinuous equations and functionals need
 /// events there, as [sensitivities](Options::sensitivities) do.
 ///
 /// With the slopes f- before and f+ after a jump y+ = a(t, y, p) at a root of e(t, y, p),
@@ -80,8 +80,8 @@ use crate::integrators::{
 /// ```
 ///
 /// # Errors
-/// [`Reason::Input`] for what cannot be used: other methods, systems that are neither dense, of band form nor
-/// sparse, and events that only touch zero; otherwise why a run ended early, forward or backward.
+/// [`Reason::Input`] for unsupported input: other methods, systems that are neither dense, of band form nor
+/// sparse, and events that only touch zero; otherwise the reason why a forward or backward run ended early.
 ///
 /// # Panics
 /// A panic of the equations, the functional, the events or the actions passes through.

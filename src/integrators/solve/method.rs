@@ -23,13 +23,13 @@ pub struct MethodUse {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Method {
-    /// The method that leads farthest for its work, which is counted, never measured, and changes with the solution: that of Dormand and Prince;
+    /// The method that advances farthest per work, which is counted, never measured; it changes with the solution: that of Dormand and Prince;
     /// where stability limits its steps a Rosenbrock method or BDF, by tolerance and number of unknowns; and back. (Where stability limits them by
     /// fast vibrations that are not damped, it stays with explicit steps, which excite these up to the tolerances: name an implicit method
     /// if they are not to be followed.)
-    /// [`Solution::methods`](super::Solution::methods) tells which, when and why.
+    /// [`Solution::methods`](super::Solution::methods) lists the methods in use, with time and reason.
     ///
-    /// Where only one method can do what is asked for, it is that one: IDA for DAEs and mass matrices; BDF for sensitivities, integrals,
+    /// Where only one method supports the problem and options, it is that one: IDA for DAEs and mass matrices; BDF for sensitivities, integrals,
     /// gradients, projection, signs of unknowns, bounds of steps or orders, and backward in time.
     Auto,
     /// CVODE, backward differentiation formulas of order 1 to 5: for stiff ODEs.
@@ -63,7 +63,7 @@ pub struct MethodInformation {
     pub is_implicit: bool,
     /// Whether it integrates backward in time, too.
     pub goes_backward: bool,
-    /// The mass matrices M that it takes, in M y' = f(t, y).
+    /// The supported mass matrices M in M y' = f(t, y).
     pub mass: MassMatrices,
     /// Whether it is a multistep method of SUNDIALS, and so computes integrals, sensitivities and gradients.
     pub has_sensitivities: bool,
@@ -75,7 +75,7 @@ pub struct MethodInformation {
     pub(super) limit: Limit,
 }
 
-/// Mass matrices that a method takes.
+/// Mass matrices that a method supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MassMatrices {

@@ -1,4 +1,4 @@
-//! How a problem is to be solved: one set of options for all methods.
+//! Options of a solution, one set for all methods.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use crate::integrators::{
 #[non_exhaustive]
 pub enum Output {
     /// The ends of all steps, and the polynomials between them, for [`Solution::at`](super::Solution::at) any
-    /// time. That takes the memory of the states times the order of the method at most.
+    /// time. Its memory is that of the states times the order of the method at most.
     #[default]
     Steps,
     /// The states at these times, in the order of the run, and at its ends.
@@ -67,12 +67,12 @@ impl Options {
         }
     }
 
-    /// How implicit methods solve the linear systems of Newton's method. Default: by the Jacobian that an ODE supplies, if it says in which
+    /// Linear solver for Newton's method. Default: with the Jacobian that an ODE supplies, if it states its
     /// form ([`Ode::supplied_jacobian`](crate::integrators::ode::Ode::supplied_jacobian)); else a dense matrix of difference quotients; for more than
     /// 500 unknowns a sparse one, if changes of the unknowns at the start show that few occur in each equation (and there is no mass
     /// matrix).
     ///
-    /// A pattern of one's own needs no search, and has entries that come later: [`LinearSolver::Klu`].
+    /// A given pattern needs no search, and can include entries that are zero at the start: [`LinearSolver::Klu`].
     pub fn linear_solver(mut self, solver: LinearSolver) -> Self {
         self.linear_solver = Some(solver);
         self

@@ -126,7 +126,7 @@ impl<'a> Problem<'a> {
     }
 
     /// F(t, y, y') = 0, starting from `y` and its time derivative `yp`, which have to satisfy the equations
-    /// unless [`differential`](Self::differential) says which of them may be corrected.
+    /// unless [`differential`](Self::differential) allows their correction.
     pub fn dae(
         system: impl Dae + Send + 'a,
         y: impl Into<Vec<f64>>,

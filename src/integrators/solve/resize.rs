@@ -1,4 +1,4 @@
-//! A run that goes on with another number of unknowns.
+//! A run that continues with another number of unknowns.
 
 use super::{
     error::Reason,
@@ -11,16 +11,16 @@ use super::{
 use crate::base::input::InputError;
 
 impl<'a> Run<'a> {
-    /// Goes on from the present time with `problem`, which may have another number of unknowns: where cells divide, a mesh is refined, parts
+    /// Continues from the present time with `problem`, which may have another number of unknowns: where cells divide, a mesh is refined, parts
     /// break off.
     ///
-    /// `problem` begins with its own state, equations, parameters and breaks. Its events take the places of those before, as many in the same
-    /// order: their counts go on, and which are armed; one whose function changes its sign by the change of the state does not take place. The
-    /// method, the end of the span, integrals, costs, limits, observer and flag stay (unless `problem` has an observer or flag of its own).
+    /// `problem` has its own state, equations, parameters and breaks. Its events replace the previous ones, as many in the same
+    /// order: counts and armed states continue; a change of sign of an event function by the change of the state is no event. The
+    /// method, the end of the span, integrals, statistics, limits, observer and flag continue (unless `problem` has an observer or flag of its own).
     ///
-    /// The integrator is a new one: one-step methods try the step that was planned (and know no errors of steps before), multistep methods begin with order 1 and estimate a first
+    /// The integrator is a new one: one-step methods try the step that was planned (without errors of earlier steps), multistep methods start with order 1 and estimate a first
     /// step, and [`Method::Auto`] begins with the explicit method. With [sensitivities](Options::sensitivities) those of the new state are given
-    /// by [`Problem::initial_sensitivities`]. What was [saved](Self::save) before does not fit the run any more, and progress counts from here.
+    /// by [`Problem::initial_sensitivities`]. A state [saved](Self::save) before cannot be restored any more, and progress counts from here.
     ///
     /// ```
     /// use pliant::{
@@ -51,7 +51,7 @@ impl<'a> Run<'a> {
     /// before.
     pub fn resize(&mut self, mut problem: Problem<'a>, options: &Options) -> Result<(), Reason> {
         if let Some(end) = self.end {
-            let help = "it has ended, and nothing is left to go on with: make a longer one";
+            let help = "it has ended: give it a longer span";
             return Err(InputError::new("run", format!("{end:?}"), help).into());
         }
         if problem.events.len() != self.events.len() {

@@ -355,7 +355,7 @@ impl<'a> Run<'a> {
         Snapshot { t: self.t, y, yp, p, sides: self.signs() }
     }
 
-    /// Where the run stands, to be continued later or by another program: [`Problem::resume`].
+    /// The present state of the run, to be continued later or by another program: [`Problem::resume`].
     #[must_use]
     pub fn save(&self) -> Saved {
         Saved {

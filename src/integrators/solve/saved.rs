@@ -3,7 +3,7 @@
 use crate::base::input::InputError;
 use crate::integrators::common::{check_finite, check_length};
 
-/// Where a run stands, for [`Problem::resume`](super::Problem::resume): all of it is plain numbers.
+/// The state of a run, for [`Problem::resume`](super::Problem::resume): plain numbers only.
 ///
 /// The run continues from here with a new start of the integrator, which estimates its first step: the
 /// solution is the same within the tolerances, not to the last bit.
@@ -20,8 +20,8 @@ pub struct Saved {
     pub parameters: Vec<f64>,
     /// How often each event was met.
     pub counts: Vec<u32>,
-    /// Whether each event may take place: none that happened [once](super::Event::once), or was
-    /// [disarmed](super::Jump::disarm). Empty: all but those that happened once.
+    /// Whether each event is armed: none is that occurred [once](super::Event::once), or was
+    /// [disarmed](super::Jump::disarm). Empty: all are, except those that occurred once.
     #[cfg_attr(feature = "serde", serde(default))]
     pub armed: Vec<bool>,
     /// The sensitivities, one column after the other; empty if there are none.

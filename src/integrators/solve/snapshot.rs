@@ -1,4 +1,4 @@
-//! Where a run stood, the actions that it performed there, and the sides of its events.
+//! The state of a run at a time, the actions that it performed there, and the sides of its events.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

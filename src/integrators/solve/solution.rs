@@ -37,7 +37,7 @@ pub enum End {
     Event(usize),
     /// The action of a break ended the run.
     Break,
-    /// It was stopped; [`Stopped`](super::Stopped) says why.
+    /// It was stopped; [`Stopped`](super::Stopped) has the reason.
     Early,
 }
 
@@ -289,7 +289,7 @@ impl Solution {
         check_length("length of out", out.len(), self.n)?;
         check_time("t", t)?;
         let Some(inner) = &self.inner else {
-            let help = "what lies between the times was not kept: take Output::Steps";
+            let help = "the solution between the times was not kept: use Output::Steps";
             return Err(InputError::new("output", "Times or End", help));
         };
         let (start, end) = (self.t[0], self.t[self.t.len() - 1]);
@@ -374,7 +374,7 @@ impl Solution {
         self.notice.as_deref()
     }
 
-    /// Where the run stood at its end, to go on from there: [`Problem::resume`](super::Problem::resume).
+    /// The state of the run at its end, to continue from there: [`Problem::resume`](super::Problem::resume).
     #[must_use]
     pub fn saved(&self) -> &Saved {
         &self.saved

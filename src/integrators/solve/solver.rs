@@ -11,8 +11,8 @@ use super::{
 
 /// Integrates `problem` by `method` over `span`, from its start to its end, which may lie before it.
 ///
-/// Times may be those of a clock, such as the seconds since 1970. The span is the difference of its two numbers, which are 2.4e-7 s apart
-/// there, and so is what the equations see of the time; steps are as fine as they have to be, as they are counted from the start.
+/// Times may be those of a clock, such as the seconds since 1970. The span is the difference of its two numbers, with a spacing of 2.4e-7 s
+/// there, which is also the resolution of the time in the equations; steps may be finer, as they are counted from the start.
 ///
 /// # Errors
 /// [`Error::Input`] if something cannot be used: then nothing was computed; [`Error::Stopped`] if the end was

@@ -18,12 +18,12 @@ use crate::integrators::common::is_fine;
 impl Run<'_> {
     /// Makes one step; `None` at the end of the run.
     ///
-    /// A step ends where something happens to the state: at a break, or at an event that has an action or
+    /// A step ends where the state may change: at a break, or at an event that has an action or
     /// ends the run.
     ///
     /// # Errors
-    /// The reason why the run cannot continue. The state that was reached remains: [`t`](Self::t), [`y`](Self::y). Where it is the number of
-    /// steps, [`notice`](Self::notice) may know why there are so many.
+    /// The reason why the run cannot continue. The state that was reached remains: [`t`](Self::t), [`y`](Self::y). If it is the number of
+    /// steps, [`notice`](Self::notice) may have the cause.
     pub fn advance(&mut self) -> Result<Option<Step<'_>>, Reason> {
         if self.end.is_some() {
             return Ok(None);

@@ -1,4 +1,4 @@
-//! The factors of I - gamma df/dy, sparse or of band form, for methods that are not of SUNDIALS.
+//! The factors of I - gamma df/dy, dense, sparse or of band form, for methods that are not of SUNDIALS.
 
 use std::ptr;
 

@@ -83,7 +83,7 @@ impl GrowingTable {
         let first = csv::Reader::from_reader(text.as_bytes()).headers().cloned();
         if !first.is_ok_and(|first| first == header(&self.columns, trajectory)) {
             let help =
-                "its columns are others: resume with the same nodes and sensors, or run anew";
+                "its columns are others: resume with the same nodes and sensors, or run it again";
             return Err(InputError::new("table to go on with", self.path.display(), help).into());
         }
         Ok(Self { began: Some(began), ..self })

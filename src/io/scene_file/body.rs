@@ -75,13 +75,13 @@ pub(super) const BODY: TableKeys = TableKeys::new(
         .default("points, or what goes with `cells = \"auto\"` and `bubbles`"),
         Key::new("material", ValueType::Table(&MATERIAL), "the material").required(),
         Key::new("region", ValueType::Tables(&REGION), "parts with a material of their own"),
-        Key::new("velocity", ValueType::Vector, "its velocity at first, in place of that of `[initial]`")
+        Key::new("velocity", ValueType::Vector, "its initial velocity, in place of that of `[initial]`")
             .in_unit("m/s")
             .default("that of `[initial]`"),
         Key::new(
             "spin",
             ValueType::OneOrMore(&ValueType::Number),
-            "its angular velocity at first about its own centre of mass, on top of that",
+            "its initial angular velocity about its own centre of mass, in addition to that",
         )
         .in_unit("rad/s")
         .note("One number in the plane, counter-clockwise; three in space.")

@@ -177,7 +177,7 @@ pub(super) fn add_dipole(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let dipole = Dipole::new(vector(&Dipole::MOMENT)?, vector(&Dipole::POSITION)?);
     let name = device_name(table, &scene, "dipole", "dipole")?;
     if scene.magnets().is_empty() {
-        let help = "the scene has no magnet that feels it: add a [[magnet]]";
+        let help = "the scene has no magnet on which it acts: add a [[magnet]]";
         return Err(table.blame(InputError::new("dipole", format!("\"{name}\""), help)));
     }
     Ok(scene.dipole(dipole.named(name)))

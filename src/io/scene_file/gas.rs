@@ -19,7 +19,7 @@ pub(super) const GAS: TableKeys = TableKeys::new(
             .note("There it fills the volume V_0 with m_0 = p_0 V_0 1.185e-5 kg of air at 20 C.")
             .default("101325"),
         Key::number("exponent", "the exponent n", "1")
-            .note("1 is isothermal, 1.4 adiabatic, and what is between them polytropic.")
+            .note("1 is isothermal, 1.4 adiabatic, and values in between are polytropic.")
             .default("1"),
     ],
     "[[gas]]\nchamber = \"inside\"\npressure = 1.2e5\nexponent = 1.4",

@@ -23,13 +23,13 @@ pub(super) const GROWTH: TableKeys = TableKeys::new(
         Key::new("centre", ValueType::Vector, "a point of the axis around which they grow").in_unit("m"),
         AXIS,
         Key::number("pitch", "angle by which the direction of growth climbs along the axis: 0 are rings, others helices", "rad").default("0"),
-        Key::number("across", "growth across the direction, by that along it: 0 is none, 1 is alike", "1").default("0"),
+        Key::number("across", "growth across the direction, relative to that along it: 0 is none, 1 isotropic", "1").default("0"),
         Key::new("keeps_volume", ValueType::Flag, "whether they get thinner across the direction as they grow along it, and keep their volume")
             .default("false"),
-        Key::new("bend", ValueType::Array(&ValueType::Number, 2), "of rods: curvatures about d_1 and d_2 that a strain of 1 adds to those in which they are free of stress, in place of length")
+        Key::new("bend", ValueType::Array(&ValueType::Number, 2), "of rods: changes of the stress-free curvatures about d_1 and d_2 per unit strain, in place of length")
             .in_unit("1/m")
             .note("In the plane the second one bends."),
-        Key::number("twist", "of rods: the twist that a strain of 1 adds, in place of length", "rad/m").default("0"),
+        Key::number("twist", "of rods: change of the stress-free twist per unit strain, in place of length", "rad/m").default("0"),
         BOX,
         GROUP,
         CELLS,

@@ -25,7 +25,7 @@ pub(super) const INITIAL: TableKeys = TableKeys::new(
         .default("undeformed, at rest"),
         Key::new("velocity", ValueType::Vector, "the velocity of all nodes")
             .in_unit("m/s")
-            .note("Not beside a state `from` which they move already.")
+            .note("Not with a state `from` that has velocities.")
             .default("0"),
         Key::new(
             "spin",
@@ -42,7 +42,7 @@ pub(super) const INITIAL: TableKeys = TableKeys::new(
 
 const OF_NODES: TableKeys = TableKeys::new(
     "initial.nodes",
-    "Nodes with a velocity of their own at first.",
+    "Nodes with an initial velocity of their own.",
     &[
         Key::new("nodes", ValueType::Nodes, "nodes").required(),
         Key::new("velocity", ValueType::Vector, "their velocity").in_unit("m/s").required(),

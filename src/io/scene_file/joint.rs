@@ -42,12 +42,12 @@ pub(super) const JOINT: TableKeys = TableKeys::new(
         Key::vector("at", "its place in the undeformed shape", "m").required(),
         Key::vector("axis", "its axis, of a hinge in space, of a slider and of a screw; of a universal joint that of the cross in the first side", "1"),
         Key::vector("second_axis", "the axis of the cross of a universal joint in the second side", "1"),
-        Key::number("lead", "the displacement of a screw for a turn; negative of a left-handed thread", "m"),
+        Key::number("lead", "the displacement of a screw per turn; negative for a left-handed thread", "m"),
         Key::number("bearing_stiffness", "the stiffness of a thread, of a cross, or of a guide between two bodies, by which these hold", "N m/rad or N/m"),
         Key::number("bearing_damping", "their damping", "N m s or N s/m").default("0"),
         Key::new("gear", ValueType::Table(&GEAR), "teeth that couple it with another joint"),
         Key::number("stiffness", "the stiffness of the spring along it", "N m/rad or N/m").default("0"),
-        Key::number("rest", "the angle or displacement at which that is relaxed", "rad or m").default("0"),
+        Key::number("rest", "the angle or displacement at which the spring is relaxed", "rad or m").default("0"),
         Key::number("damping", "the damping along it", "N m s or N s/m").default("0"),
         Key::new("stops", ValueType::Array(&ValueType::Number, 2), "the lowest and the highest angle or displacement").in_unit("rad or m"),
         Key::number("stop_stiffness", "the stiffness behind the stops", "N m/rad or N/m"),
@@ -57,7 +57,7 @@ pub(super) const JOINT: TableKeys = TableKeys::new(
         Key::number("servo_stiffness", "the torque or force of a servo per difference from its target", "N m/rad or N/m").default("0"),
         Key::number("servo_damping", "its torque or force per difference from the target speed", "N m s or N s/m").default("0"),
         Key::number("motor_limit", "the largest torque or force of the motor, at rest", "N m or N").default("none"),
-        Key::number("no_load_speed", "the speed at which that has fallen to 0, along a line", "rad/s or m/s").default("none"),
+        Key::number("no_load_speed", "the speed at which the limit has fallen to 0, linearly", "rad/s or m/s").default("none"),
     ],
     "[[joint]]\nname = \"hip\"\nkind = \"revolute\"\nbetween = [\"world\", \"left\"]\nat = [0.0, 0.05]\nservo_stiffness = 2.0\nservo_damping = 0.05",
 );
@@ -98,12 +98,12 @@ pub(super) const MOTOR: TableKeys = TableKeys::new(
 
 pub(super) const GEAR: TableKeys = TableKeys::new(
     "gear",
-    "Teeth, a belt, a rack or a spindle between a revolute joint that stands before this one in the file, and this one.",
+    "Teeth, a belt, a rack or a spindle between an earlier revolute joint of the file and this one.",
     &[
         Key::new("joint", ValueType::Text, "the name of that joint").required(),
         Key::new("teeth", ValueType::Array(&ValueType::Number, 2), "the teeth of the wheels on that joint and on this one")
-            .note("The wheels turn against each other; with a negative number, that of a ring or of a belt, alike."),
-        Key::number("lead", "the displacement of this joint, which slides, for a turn of that one", "m"),
+            .note("The wheels turn in opposite directions; with a negative number (a ring gear or a belt) in the same one."),
+        Key::number("lead", "the displacement of this sliding joint per turn of the other", "m"),
         Key::number("stiffness", "the stiffness of the teeth at this joint", "N m/rad or N/m").required(),
         Key::number("damping", "their damping", "N m s or N s/m").default("0"),
     ],

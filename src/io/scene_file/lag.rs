@@ -20,9 +20,9 @@ pub(super) const LAG: TableKeys = TableKeys::new(
         Key::number("fall", "that for commands below the state", "s"),
         Key::new("activation", ValueType::Flag, "whether it is the activation of muscles by Hill's law").default("false"),
         Key::number("capacity", "the heat of a kelvin", "J/K"),
-        Key::number("loss", "the power that a kelvin gives away", "W/K"),
+        Key::number("loss", "the heat loss per kelvin of temperature rise", "W/K"),
         Key::number("per_kelvin", "the actuation per kelvin of temperature rise: a force, a tension, a length of a winch, a stress or a strain", "N, m, Pa or 1 by K")
-            .note("Of a spring below 0 if it contracts as it gets warm."),
+            .note("For a spring negative if it contracts as it gets warm."),
     ],
     "[[muscle]]\nname = \"biceps\"\nalong = [1.0, 0.0]\nhill = { largest = 2e5 }\n\n[[lag]]\nactuators = \"biceps\"\nrise = 0.015\nfall = 0.05\nactivation = true",
 )

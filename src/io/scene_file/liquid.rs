@@ -21,14 +21,14 @@ pub(super) const LIQUID: TableKeys = TableKeys::new(
             "V_m at the start, as a part of the volume of the undeformed chamber",
             "1",
         )
-        .note("With 1 there is no pressure at first; with a `surface` it has to be below 1.")
+        .note("With 1 the initial pressure is 0; with a `surface` it has to be below 1.")
         .default("1"),
         Key::new(
             "surface",
             ValueType::Flag,
             "whether it has a level surface under air of the pressure outside, in a chamber that is open or vented and not full",
         )
-        .note("It is not compressed: walls feel rho g (h - z) below the level h, which follows from the volume, and nothing above it. Needs gravity.")
+        .note("It is not compressed: the pressure on the walls is rho g (h - z) below the level h, which follows from the volume, and 0 above it. Requires gravity.")
         .default("false"),
     ],
     "[[liquid]]\nchamber = \"inside\"\nbulk_modulus = 2.2e9\ndensity = 1000.0",

@@ -15,7 +15,7 @@ pub(super) const MATERIAL: TableKeys = TableKeys::new(
      viscosity from `viscosity` and `poisson` in the same way.",
     &[
         Key::number("density", "the density", "kg/m^3").default(OF_BODY),
-        Key::new("rigid", ValueType::Flag, "whether what is made of it is rigid")
+        Key::new("rigid", ValueType::Flag, "whether bodies or regions of this material are rigid")
             .note("The mesh then gives its shape and inertia, and it moves by 3 degrees of freedom (6 in space). Only `density` is needed, or `mass`; \
                   in equilibria `young`, by default 1e8 Pa, keeps its shape.")
             .default("false; in a region, as the body"),

@@ -17,13 +17,13 @@ pub(super) const MESH: TableKeys = TableKeys::new(
      `right`, `bottom`, `top` (in space `front` and `back`, too), rings `inner` and `outer`; those of Gmsh have the \
      names of physical groups.",
     &[
-        Key::new("origin", ValueType::Vector, "the place of the lower corner, or of the centre of a ring")
+        Key::new("origin", ValueType::Vector, "the position of the lower corner, or of the centre of a ring")
             .in_unit("m")
             .default("the origin"),
         Key::new(
             "turn",
             ValueType::OneOrMore(&ValueType::Number),
-            "the angle by which the mesh is turned about the origin before it is brought to its place",
+            "the angle by which the mesh is rotated about the origin before it is moved to `origin`",
         )
         .in_unit("rad")
         .note("One number in the plane, counter-clockwise; in space three, the axis times the angle. It turns nodes alone: boxes, and \

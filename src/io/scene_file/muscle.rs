@@ -24,7 +24,7 @@ pub(super) const MUSCLE: TableKeys = TableKeys::new(
         BOX,
         GROUP,
         CELLS,
-        Key::new("hill", ValueType::Table(&HILL), "lets it pull less far from its best length and as it shortens").default("it pulls alike"),
+        Key::new("hill", ValueType::Table(&HILL), "reduces its stress away from the optimal length and as it shortens").default("it pulls alike"),
     ],
     "[[muscle]]\nname = \"upper\"\nalong = [1.0, 0.0]\nbox = [[0.0, 0.01], [0.1, 0.02]] # cells whose centroid lies in it",
 )

@@ -26,8 +26,8 @@ pub(super) const OBSTACLE: TableKeys = TableKeys::new(
         FRICTION_COEFFICIENT,
         Key::number("sticking_speed", "the speed below which friction sticks", "m/s")
             .default("a thousandth of the size of the body per second"),
-        Key::new("backward", ValueType::Table(&BACKWARD), "a way in which friction is larger, as by bristles, scales or claws"),
-        Key::new("adhesion", ValueType::Flag, "whether damping may pull at a body that leaves")
+        Key::new("backward", ValueType::Table(&BACKWARD), "a direction of larger friction, as of bristles, scales or claws"),
+        Key::new("adhesion", ValueType::Flag, "whether damping may pull a separating body")
             .default("false"),
         Key::new("velocity", ValueType::Vector, "the velocity of the obstacle").in_unit("m/s").default("0"),
         Key::new("path", ValueType::Table(&WAY), "the path of the obstacle, in place of a velocity"),
@@ -54,9 +54,9 @@ const BACKWARD: TableKeys = TableKeys::new(
     "Larger friction against sliding one way; what slides at an angle to it has less, and all other ways have \
      `friction_coefficient`.",
     &[
-        Key::new("direction", ValueType::Vector, "the way in which friction is larger, in space")
+        Key::new("direction", ValueType::Vector, "the direction of larger friction, fixed in space")
             .required(),
-        Key::number("friction_coefficient", "the static coefficient of friction that way", "1")
+        Key::number("friction_coefficient", "the static coefficient of friction in that direction", "1")
             .note("The kinetic one is larger in proportion.")
             .required(),
     ],
@@ -143,13 +143,13 @@ const WAY: TableKeys = TableKeys::new(
         Key::new(
             "displacements",
             ValueType::List(&ValueType::Vector),
-            "displacements, at these times, from where it was said to be",
+            "displacements, at these times, from the position of its shape",
         )
         .in_unit("m"),
         Key::new(
             "displacement",
             ValueType::ChangingVector,
-            "the displacement from where it was said to be",
+            "the displacement from the position of its shape",
         )
         .in_unit("m"),
     ],

@@ -48,7 +48,7 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
             ValueType::Flag,
             "whether the phase begins with velocities that its constraints allow",
         )
-        .note("What is taken away is lost, as in a perfectly plastic impact.")
+        .note("The removed kinetic energy is lost, as in a perfectly plastic impact.")
         .default("false"),
     ],
     "[[phase]]\nname = \"push\"\nuntil = 0.5\nhold = [{ nodes = \"bottom\" }]\ncontact = false",
@@ -199,7 +199,7 @@ pub(super) const LOAD: TableKeys = TableKeys::new(
             .note("Spread evenly over the faces that the nodes make up; nodes without faces share it equally."),
         Key::new("traction", ValueType::ChangingVector, "the force per undeformed area of the faces")
             .in_unit("N/m^2"),
-        Key::new("moment", ValueType::Either(&[ValueType::Changing, ValueType::ChangingVector]), "a moment as of `moment`, alone or beside a force")
+        Key::new("moment", ValueType::Either(&[ValueType::Changing, ValueType::ChangingVector]), "a moment as in `moment`, alone or with a force")
             .in_unit("N m"),
         TIMES,
         PERIOD,
@@ -209,7 +209,7 @@ pub(super) const LOAD: TableKeys = TableKeys::new(
             .in_unit("N"),
         Key::new("tractions", ValueType::List(&ValueType::Vector), "the traction at these times")
             .in_unit("N/m^2"),
-        Key::new("moments", ValueType::List(&ValueType::Vector), "moments at these times, beside forces")
+        Key::new("moments", ValueType::List(&ValueType::Vector), "moments at these times, with forces")
             .in_unit("N m"),
     ],
     "load = [\n\
@@ -336,9 +336,9 @@ pub(super) const ACTUATE: TableKeys = TableKeys::new(
         Key::new("length", ValueType::Changing, "of a winch: the length that it has drawn in").in_unit("m"),
         Key::new("stress", ValueType::Changing, "of a muscle: the force per section of the undeformed shape by which it pulls; below 0 it pushes")
             .in_unit("Pa"),
-        Key::new("strain", ValueType::Changing, "of a growth: by how much what is free gets longer; of heat the coefficient of expansion times the change of temperature")
+        Key::new("strain", ValueType::Changing, "of a growth: the strain of unconstrained cells; for thermal expansion the coefficient times the change of temperature")
             .in_unit("1"),
-        Key::new("power", ValueType::Changing, "the power that heats them, each by itself").in_unit("W"),
+        Key::new("power", ValueType::Changing, "the heating power of each of them").in_unit("W"),
         TIMES,
         PERIOD,
         Key::new("forces", ValueType::List(&ValueType::Number), "forces at these times").in_unit("N"),

@@ -88,10 +88,10 @@ pub(super) const CURVE: TableKeys = TableKeys::new(
         word: "helix",
         about: "a helix, in space",
         keys: &[
-            Key::number("pitch", "the way along the axis in a turn", "m").required(),
+            Key::number("pitch", "the advance along the axis per turn", "m").required(),
             Key::number(
                 "turns",
-                "the number of its turns; negative ones go the other way about the axis",
+                "the number of its turns; negative for the opposite sense about the axis",
                 "1",
             )
             .required(),

@@ -28,32 +28,32 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
 const OWN: [Kind; 24] = [
     Kind {
         word: "position",
-        about: "where nodes, a point of a body or a marker are (m)",
+        about: "position of nodes, of a point of a body or of a marker (m)",
         keys: &SPOT,
     },
     Kind {
         word: "displacement",
-        about: "how far nodes, a point of a body or a marker are from where they are in the undeformed shape (m)",
+        about: "displacement of nodes, of a point of a body or of a marker from the undeformed shape (m)",
         keys: &SPOT,
     },
     Kind {
         word: "velocity",
-        about: "how fast nodes, a point of a body or a marker move (m/s)",
+        about: "velocity of nodes, of a point of a body or of a marker (m/s)",
         keys: &SPOT,
     },
     Kind {
         word: "acceleration",
-        about: "how the velocity of nodes, of a point of a body or of a marker changes (m/s^2)",
+        about: "acceleration of nodes, of a point of a body or of a marker (m/s^2)",
         keys: &SPOT,
     },
     Kind {
         word: "constraint-force",
-        about: "the force of what holds or moves nodes, their reaction (N)",
+        about: "the constraint force on nodes, their reaction (N)",
         keys: &[NODES],
     },
     Kind {
         word: "constraint-moment",
-        about: "the moment of what holds or moves nodes about a point that stays where it is (N m), counter-clockwise in the plane",
+        about: "the moment of the constraint forces on nodes about a fixed point (N m), counter-clockwise in the plane",
         keys: &[
             NODES,
             Key::new("about", ValueType::Vector, "the point").in_unit("m").required(),
@@ -136,7 +136,7 @@ const OWN: [Kind; 24] = [
             UNIT,
         ],
     },
-    Kind { word: "centre-of-mass", about: "where the centre of mass is (m)", keys: &[BODY] },
+    Kind { word: "centre-of-mass", about: "the centre of mass (m)", keys: &[BODY] },
     Kind { word: "momentum", about: "the momentum (kg m/s)", keys: &[BODY] },
     Kind {
         word: "rotation",
@@ -197,7 +197,7 @@ const KINDS: [Kind; OWN.len() + OUTPUTS.len()] = {
 
 const MARKER: TableKeys = TableKeys::new(
     "marker",
-    "A point beside the body, as on a post or a plate: it moves with nodes as if both were one rigid body, by the rigid motion nearest to theirs.",
+    "A point outside of the body, as on a post or a plate: it moves with nodes as if both were one rigid body, by the best-fitting rigid motion.",
     &[
         Key::new("nodes", ValueType::Nodes, "the nodes that it moves with").required(),
         Key::vector("at", "where it is in the undeformed shape", "m"),
@@ -221,19 +221,19 @@ const SPOT: [Key; 3] = [
     Key::new(
         "inside",
         ValueType::Vector,
-        "the undeformed position of a point of a body, whatever nodes are near",
+        "the undeformed position of a point of a body, which need not be a node",
     )
     .in_unit("m")
     .default("`nodes` or `marker`"),
     Key::new(
         "marker",
         ValueType::Table(&MARKER),
-        "a point beside the body that moves with nodes of it",
+        "a point outside of the body that moves with some of its nodes",
     )
     .default("`nodes` or `inside`"),
 ];
 const TURNED: Key =
-    Key::new("nodes", ValueType::Nodes, "the nodes that turn, all of which count alike")
+    Key::new("nodes", ValueType::Nodes, "the nodes whose rotation is read, with equal weights")
         .default("the body");
 const PLACES: Key = Key::new("nodes", ValueType::Nodes, "the nodes").default("`point`");
 const POINT: Key =

@@ -45,7 +45,7 @@ const ACCURACY: Key = Key::new(
      `rtol`.",
 )
 .default("one run by `rtol`");
-const QUANTITY: Key = Key::new("quantity", ValueType::Text, "what `accuracy` is of")
+const QUANTITY: Key = Key::new("quantity", ValueType::Text, "the quantity to which `accuracy` applies")
     .note(QUANTITIES)
     .default("the whole motion");
 const REDUCED: Key = Key::new(
@@ -53,7 +53,7 @@ const REDUCED: Key = Key::new(
     ValueType::Text,
     "the reduced model by which it is run: a file of `pliant reduce`, relative to the scene file",
 )
-.note("`\"\"` is all unknowns. Statics always takes all of them.")
+.note("`\"\"` is all unknowns. Statics always uses all of them.")
 .default("all unknowns");
 const QUANTITIES: &str = "`motion`; a sensor or a set of nodes, with a component where need be, as `tip.y`; `com`, `rotation`; \
      behind a colon the part that counts, where all times do not: `end`, `max`, `min`, `frequency`, `damping`.";
@@ -100,7 +100,7 @@ pub(super) const OUTPUT: TableKeys = TableKeys::new(
         Key::number("step", "the time between samples", "s").default("the ends of the phases only"),
         Key::new("times", ValueType::List(&ValueType::Number), "times of samples, in any order, in place of a step")
             .in_unit("s")
-            .note("The start and the ends of the phases are sampled besides."),
+            .note("The start and the ends of the phases are sampled in addition."),
         Key::new("track", ValueType::Nodes, "nodes whose displacements the table lists"),
         Key::new(
             "formats",

@@ -38,9 +38,9 @@ pub(super) const CABLE: TableKeys = TableKeys::new(
         Key::new(
             "path",
             ValueType::List(&ValueType::Either(&[ValueType::Nodes, ValueType::Table(&END), ValueType::Table(&INSIDE)])),
-            "nodes, by number, name or box, places in the body, and points of space, in order",
+            "nodes, by number, name or box, points in the body, and fixed points of space, in order",
         )
-        .note("Nodes of a set or a box follow each other by their distance from the place before them, or from the first of them.")
+        .note("Nodes of a set or a box are ordered by their distance from the point before them, or from the first of them.")
         .required(),
         Key::number("stiffness", "the stiffness", "N/m").note("With the modulus E and the section A it is E A / length.").default("0"),
         Key::number("length", "the natural length", "m").default("that of the path at the start"),
@@ -64,7 +64,7 @@ const END: TableKeys = TableKeys::new(
 
 const INSIDE: TableKeys = TableKeys::new(
     "inside",
-    "A place in the body by which a cable is led. It moves with the body, and is the same on a finer mesh.",
+    "A point in the body that guides a cable. It moves with the body, and is the same on a finer mesh.",
     &[Key::vector(
         "inside",
         "its undeformed position, within a cell or on the surface, of a rod in a cross section",
@@ -101,7 +101,7 @@ pub(super) const CHAMBER: TableKeys = TableKeys::new(
             ValueType::Flag,
             "whether walls in space that are open are closed by lids on their rims, from the mean of a rim's nodes to its edges",
         )
-        .note("Without it a rim is an error. The nodes of the rim feel the pressure on its lid.")
+        .note("Without it a rim is an error. The pressure force on the lid acts on the nodes of the rim.")
         .default("false"),
         Key::number("thickness", "the thickness", "m").default("that of the body"),
         Key::number("burst", "the pressure, above that outside, at which it bursts", "Pa")

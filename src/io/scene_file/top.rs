@@ -45,10 +45,10 @@ const BEFORE: [Key; 9] = [
     Key::new("unusual", ValueType::List(&ValueType::Text), "quantities whose warnings of units are suppressed")
         .note("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`, `remanence`, `magnetic-field`, `dipole-moment`, `absolute-pressure`, `orifice-area`, `touch-start`, `facets`: they are not [warned of](scenes/warnings.md#warnings).")
         .default("none"),
-    Key::new("body", ValueType::Tables(&BODY), "what moves").default("required without rods"),
+    Key::new("body", ValueType::Tables(&BODY), "the mesh and material of a body").default("required without rods"),
     Key::new("rod", ValueType::Tables(&ROD), "rods: slender bodies"),
     Key::new("point", ValueType::Tables(&POINT), "point masses"),
-    Key::new("initial", ValueType::Table(&INITIAL), "how the body moves at first").default("at rest"),
+    Key::new("initial", ValueType::Table(&INITIAL), "the initial motion").default("at rest"),
 ];
 const AFTER: [Key; 5] = [
     Key::new("phase", ValueType::Tables(&PHASE), "the phases, one after the other").required(),

@@ -156,7 +156,7 @@ impl Device for Dipole {
     ) -> Result<Arc<dyn Force>, InputError> {
         let magnets = site.magnetized_points()?;
         if magnets.is_empty() {
-            let help = "the scene has no magnet that feels it: add one";
+            let help = "the scene has no magnet on which it acts: add one";
             return Err(InputError::new(KIND, format!("\"{}\"", self.name), help));
         }
         Ok(Arc::new(DipoleForce { name: self.name.clone(), inputs, magnets }))

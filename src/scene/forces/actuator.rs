@@ -35,9 +35,9 @@ pub(crate) struct ActuatorKind {
 pub(crate) enum Drive {
     Force,
     Length,
-    /// Of all, this is a load that statics brings on in steps.
+    /// The only one that statics treats as a load, in load steps.
     Stress,
-    /// Of cells whose strain energy it changes.
+    /// That of growth, which changes the strain energy of cells.
     Strain,
 }
 
@@ -112,7 +112,7 @@ pub(crate) trait Actuator: Any + fmt::Debug + Send + Sync {
         None
     }
 
-    /// The cells whose elasticity it has in place of the body, as a `strain` has grown them.
+    /// The cells whose elasticity it computes in place of the body, after growth by a `strain`.
     ///
     /// # Errors
     /// Cells that do not exist.
@@ -160,11 +160,11 @@ pub(crate) struct ComponentMap<'a> {
     pub(crate) share: f64,
 }
 
-/// The place of a component and of its mirror image.
+/// The position of a component and of its mirror image.
 pub(crate) struct Placed {
-    /// Its properties but for its name and its place, as a text.
+    /// Its properties except name and position, as a text.
     pub(crate) likeness: String,
-    /// Numbers that say where it is, and those of its image; none where that is not known.
+    /// Numbers that determine its position, and those of its image; none where that is not known.
     pub(crate) at: [Vec<f64>; 2],
     /// Coordinates (m) of its points on the axis of the map.
     pub(crate) along: Vec<f64>,

@@ -33,7 +33,7 @@ use crate::elements::mesh::{Face, Mesh, NodeMap, Selection};
 /// The force on its nodes is p h dS/du in the plane, with the area S within its walls and the thickness h,
 /// and p dV/du in space and in a body of revolution, with the enclosed volume V. Walls with mid nodes are curved according to the shape
 /// functions. Phases set the pressure ([`Phase::pressure`](crate::Phase::pressure)); without it a chamber
-/// does nothing.
+/// exerts no force.
 ///
 /// Walls have no contact with each other. A run ends with an error where a chamber under pressure encloses a
 /// volume below 0; without pressure, that is a warning.
@@ -73,7 +73,7 @@ impl Chamber {
     ///
     /// A named set or a box stands for part of the boundary of the body: the faces all of whose nodes belong
     /// to it. The chamber lies on the side of these faces that is opposite to the body.
-    /// - In the plane they form closed loops, rooms with the same pressure; one of them may be open if it is
+    /// - In the plane they form closed loops, cavities with the same pressure; one of them may be open if it is
     ///   [closed by a line](Self::closed_by_line).
     /// - In a body of revolution walls that end on the axis are closed there.
     /// - In space they form closed surfaces.
@@ -153,10 +153,10 @@ impl Chamber {
         }
     }
 
-    /// Closes walls in the plane that are open at one place by the straight line between their ends.
+    /// Closes walls in the plane that have one gap by the straight line between their ends.
     ///
     /// Each end takes half of the force of the pressure on that line (if it is held, this has no effect). In a body of revolution whose walls
-    /// have one end off the axis, a level disc closes them, whose force the circle at that end takes. Without this a gap is an error.
+    /// have one end off the axis, a flat disc closes them, whose pressure force acts on the circle at that end. Without this a gap is an error.
     pub fn closed_by_line(mut self) -> Self {
         self.is_closed_by_line = true;
         self
@@ -164,8 +164,8 @@ impl Chamber {
 
     /// Closes walls in space that are open by a lid on each of their rims.
     ///
-    /// A lid runs from the mean of the rim's nodes to its edges: it is flat if the rim is. The nodes of the
-    /// rim take the force of the pressure on it. Without this a rim is an error.
+    /// A lid runs from the mean of the rim's nodes to its edges: it is flat if the rim is. The force of the pressure on it
+    /// acts on the nodes of the rim. Without this a rim is an error.
     pub fn closed_by_lid(mut self) -> Self {
         self.is_closed_by_lid = true;
         self
@@ -177,8 +177,8 @@ impl Chamber {
         self
     }
 
-    /// Pressure (Pa, above that outside) at which it bursts: the first step that ends with more in it ends the run, with an error that says when
-    /// and how much that was. Default: it bears any pressure. An equilibrium is not checked.
+    /// Pressure (Pa, above that outside) at which it bursts: the first step that ends above it ends the run, with an error that states the time
+    /// and the pressure. Default: it never bursts. An equilibrium is not checked.
     ///
     /// ```
     /// use pliant::{Body, Cells, Chamber, Material, Mesh, Phase, Sampling, Scene, Settings, Signal};

@@ -49,7 +49,7 @@ pub(crate) trait ChamberFluid: Send + Sync {
     /// Potential energy (J), 0 at the start.
     fn potential(&self, u: &[f64], fill: Fill) -> f64;
 
-    /// By what the pressure of an `amount` (kg) exceeds that outside (Pa) under the displacements `u` (m).
+    /// The gauge pressure (Pa) of an `amount` (kg) under the displacements `u` (m).
     ///
     /// # Errors
     /// As [`press`](Self::press).

@@ -35,19 +35,19 @@ use crate::elements::body::{Body, Inertia};
 use crate::elements::mesh::{Mesh, NodeMap, Selection};
 use crate::elements::rod::TubePiece;
 
-/// A fluid at rest, or one that flows everywhere alike, around the bodies of a scene: what it does to the faces of their boundary, each by itself.
+/// A fluid at rest, or in uniform flow, around the bodies of a scene: a local model of its forces on each face of their boundary.
 ///
-/// This is crude: no fluid is computed, so that a body leaves no wake, and faces do not shield each other. There are three parts, each of
-/// which may be left out; areas and normals of the first and the last are those of the deformed faces.
+/// This is crude: the flow is not computed, so that there are no wakes, and faces do not shield each other. There are three terms, each of
+/// which may be omitted; areas and normals of the first and the last are those of the deformed faces.
 ///
 /// - [Drag](Self::drag): with the velocity w of the body relative to the fluid, its part w_n along the normal n and w_t along the face, the
 ///   traction -(rho/2) (C_n |w_n| w_n n + C_t |w_t| w_t).
-/// - [Added mass](Self::added_mass): a mass per area that moves along with the faces, in all directions alike.
+/// - [Added mass](Self::added_mass): a mass per area that moves with the faces, in all directions.
 /// - Pressure by depth below a [level](Self::level): rho g times the depth, 0 above.
 ///
-/// Rods with a round section are dragged by their diameter, with 4/3 C_n across, and carry added mass on their surface; pressure by depth does not act on them.
+/// Rods with a round section have drag by their diameter, with 4/3 C_n normal to their axis, and added mass on their surface; pressure by depth does not act on them.
 ///
-/// Drag takes energy out as heat, and what a current carries along is supplied. Over a closed surface pressure by depth has an energy, which counts as
+/// The work of drag counts as dissipated, that of a current as supplied. Over a closed surface pressure by depth has an energy, which counts as
 /// gravitational; on other faces its work counts as supplied.
 ///
 /// ```
@@ -79,7 +79,7 @@ pub struct Fluid {
 }
 
 impl Fluid {
-    /// A fluid of that `density` (kg/m^3) on all faces of the boundary, which does nothing so far.
+    /// A fluid of that `density` (kg/m^3) on all faces of the boundary, without any force yet.
     pub fn new(density: f64) -> Self {
         Self {
             name: String::new(),
@@ -107,11 +107,11 @@ impl Fluid {
         Self { drag: [normal, tangential], ..self }
     }
 
-    /// Mass of the fluid (kg/m^2, per undeformed area) that moves along with the faces (default: 0).
+    /// Mass of the fluid (kg/m^2, per undeformed area) that moves with the faces (default: 0).
     ///
-    /// It is density times the thickness of a layer. That of a sphere of radius R is R/6, of a long cylinder across R/2, each on all of its
-    /// surface; of a long plate of width c, which moves along its normal, pi c/8 on both of its sides. It acts alike on motion in all directions,
-    /// though it should act along the normal alone. It has no weight.
+    /// It is density times the thickness of a layer. That of a sphere of radius R is R/6, of a long cylinder in cross-flow R/2, each on all of its
+    /// surface; of a long plate of width c, which moves along its normal, pi c/8 on both of its sides. It acts on motion in all directions,
+    /// although added mass in reality acts along the normal only. It has no weight.
     pub fn added_mass(self, per_area: f64) -> Self {
         Self { added_mass: per_area, ..self }
     }
@@ -121,7 +121,7 @@ impl Fluid {
         self.flowing(VectorSignal::Constant(velocity.into()))
     }
 
-    /// A velocity (m/s) that changes with time (s). The inertia of the current is left out.
+    /// A velocity (m/s) that changes with time (s). The inertia of the current is neglected.
     pub fn velocity_with<const D: usize>(
         self,
         velocity: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,

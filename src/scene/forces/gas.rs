@@ -42,11 +42,11 @@ pub(crate) const GAS_CONSTANT_TIMES_TEMPERATURE: f64 = 1e5 / 1.185;
 /// Least part of an amount of gas, or of a liquid with a surface, with which statics begins: without any, a chamber has no pressure.
 pub(crate) const LEAST: f64 = 1e-6;
 
-/// An amount of gas in a [chamber](crate::Chamber), in place of a pressure that phases give it.
+/// An amount of gas in a [chamber](crate::Chamber), in place of a pressure set by phases.
 ///
-/// Its absolute pressure follows the volume V of the chamber and the amount m, p = p_0 (V_0 m/(V m_0))^n, and the walls
-/// are pressed by what it exceeds the [atmosphere](crate::Scene::atmosphere) by. p_0 is the pressure in the undeformed
-/// shape, whose volume V_0 it fills with m_0 = p_0 V_0/(R T) of air at 20 C. The amount stays as it is, unless the chamber
+/// Its absolute pressure follows the volume V of the chamber and the amount m, p = p_0 (V_0 m/(V m_0))^n, and the gauge pressure,
+/// its difference from the [atmosphere](crate::Scene::atmosphere), acts on the walls. p_0 is the pressure in the undeformed
+/// shape, whose volume V_0 it fills with m_0 = p_0 V_0/(R T) of air at 20 C. The amount is constant, unless the chamber
 /// has an [`Orifice`].
 ///
 /// ```

@@ -20,20 +20,20 @@ use crate::integrators::ode::Failure;
 
 /// Cells of a body that grow: by swelling, by heat, or as an active material does.
 ///
-/// Phases give the strain e by which they grow ([`Phase::actuate`](crate::Phase::actuate)): what is free gets g = 1 + e times as long, without stress. Of
-/// heat it is the coefficient of thermal expansion times the change of temperature. They grow alike in all directions, or along
-/// [one](Self::along) that may turn [around](Self::around) an axis; across it they [keep their size](Self::across), or [that of their
+/// Phases set the strain e of growth ([`Phase::actuate`](crate::Phase::actuate)): unconstrained cells get g = 1 + e times as long, without stress. For
+/// thermal expansion it is the coefficient of expansion times the change of temperature. Growth is isotropic, or along
+/// [one direction](Self::along), which may run [around](Self::around) an axis; across it cells [keep their size](Self::across), or [their
 /// volume](Self::keeping_volume).
 ///
 /// The deformation gradient is F = F_e G with G = g a a^T + g_t (I - a a^T), and det(G) W(F_e) the energy
 /// per natural volume, W being that of the material's law (E. K. Rodriguez, A. Hoger, A. D. McCulloch, Journal of Biomechanics 27 (1994)
 /// 455-467; of muscles "active strain": D. Ambrosi, S. Pezzuto, Journal of Elasticity 107 (2012) 199-212). Energy added by growth counts
-/// as supplied. Mass stays, and so do fibres and viscosity.
+/// as supplied. Mass, fibres and viscosity do not change.
 ///
 /// Rods get longer along their axis, or [bend](Self::bending).
 ///
-/// For Green's strain with any law; not with Maxwell branches. In plane strain what grows across the plane is pressed there; in plane stress, membranes and
-/// strings it gets thicker.
+/// For Green's strain with any law; not with Maxwell branches. In plane strain growth across the plane is constrained and causes a pressure; in plane stress, membranes and
+/// strings get thicker.
 ///
 /// ```
 /// use pliant::{Body, Cells, CellSelection, Growth, Material, Mesh, Phase, Plane, Scene, Statics};
@@ -61,7 +61,7 @@ pub struct Growth {
     bends: Option<[f64; 3]>,
 }
 
-/// How what grows along a direction changes across it.
+/// Growth across the direction of growth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Across {
     /// By the strain along the direction times this (1).
@@ -115,7 +115,7 @@ impl Growth {
         Self { course: self.course.map(|course| course.with_pitch(angle)), ..self }
     }
 
-    /// Growth across the direction by the strain along it times this (1, default 0): g_t = 1 + `share` e. With 1 it is alike in all directions.
+    /// Growth across the direction by the strain along it times this (1, default 0): g_t = 1 + `share` e. With 1 it is isotropic.
     pub fn across(self, share: f64) -> Self {
         Self { across: Some(Across::Share(share)), ..self }
     }
@@ -127,7 +127,7 @@ impl Growth {
     }
 
     /// Growth of rods by bending and twisting in place of length: a strain e adds e times these curvatures (1/m) about the axes d_1 and d_2 of their sections,
-    /// and this twist (rad/m), to those in which they are free of stress. In the plane the second one is in use.
+    /// and this twist (rad/m), to the stress-free ones. In the plane the second curvature applies.
     pub fn bending(self, curvatures: [f64; 2], twist: f64) -> Self {
         Self { bends: Some([curvatures[0], curvatures[1], twist]), ..self }
     }
@@ -158,7 +158,7 @@ impl Growth {
     /// The elasticity of its cells.
     ///
     /// # Errors
-    /// Cells that the body does not have, or that cannot grow; a direction that is none there; growth across one that is not given.
+    /// Cells that the body does not have, or that cannot grow; an invalid direction; growth across a direction that is not given.
     fn growing(&self, body: &Body) -> Result<Growing, InputError> {
         let cells = self.cells(body)?;
         let course = self.course.as_ref();
@@ -171,7 +171,7 @@ impl Growth {
     }
 
     fn check_across(&self) -> Result<(), InputError> {
-        let help = "growth without a direction is alike in all: give along or centre, too";
+        let help = "growth without a direction is isotropic: give along or centre, too";
         match (&self.across, &self.course) {
             (Some(Across::KeepsVolume), None) => Err(InputError::new("keeps_volume", true, help)),
             (Some(Across::Share(share)), None) => Err(InputError::new("across", share, help)),
@@ -180,7 +180,7 @@ impl Growth {
         }
     }
 
-    /// How many times as long what is free is along the direction and across it, after a `strain` (1).
+    /// Stretches of unconstrained cells along the direction and across it, after a `strain` (1).
     fn stretches(&self, strain: f64) -> Stretches {
         let along = 1.0 + strain;
         let across = match (&self.course, self.across) {

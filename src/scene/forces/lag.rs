@@ -17,13 +17,13 @@ use crate::elements::force::{Force, NodalForces};
 use crate::elements::material::Hill;
 use crate::integrators::ode::Failure;
 
-/// A state of its own that an actuator has: it follows what phases [actuate](crate::Phase::actuate) it by, and drives the actuator in place of that.
+/// A lag of an actuator: a state that follows the [actuation](crate::Phase::actuate) by phases, and drives the actuator in its place.
 ///
 /// With the command s (a force, a tension, a length of a winch, a stress, a strain) the state a obeys a' = (s - a)/T, from 0 at the start of the scene. T is
 /// constant ([`first_order`](Self::first_order)), one of two ([`rise_and_fall`](Self::rise_and_fall)), or that of muscles ([`activation`](Self::activation)). A
 /// [heated](Self::heated) actuator is commanded by a power.
 ///
-/// It is an unknown under error control, for all methods but `central-difference`; equilibria have it where it comes to rest.
+/// It is an unknown under error control, for all methods except `central-difference`; equilibria have its steady-state value.
 ///
 /// ```
 /// use pliant::simulate::Reading;
@@ -55,7 +55,7 @@ enum LagLaw {
 }
 
 impl Lag {
-    /// A first-order lag with one `time` (s): of what is left after a step of the command, 1/e after that time.
+    /// A first-order lag with one time constant `time` (s): after a step of the command the difference falls to 1/e in that time.
     pub fn first_order(time: f64) -> Self {
         Self::rise_and_fall(time, time)
     }
@@ -74,10 +74,10 @@ impl Lag {
         Self(LagLaw::Activation { rise, fall })
     }
 
-    /// An actuator that is driven by its warmth: a shape memory alloy, a coiled thread of nylon, a layer that expands.
+    /// An actuator driven by its temperature rise: a shape memory alloy, a coiled thread of nylon, a layer that expands.
     ///
-    /// With the power P (W), which is the command, the temperature above that around is theta, and
-    /// `capacity` (J/K) theta' = P - `loss` (W/K) theta. The actuator is driven by `per_kelvin` theta: a force (N/K, below 0 where a spring contracts), a tension, a
+    /// With the power P (W), which is the command, theta is the temperature rise above the surroundings, and
+    /// `capacity` (J/K) theta' = P - `loss` (W/K) theta. The actuator is driven by `per_kelvin` theta: a force (N/K, negative where a spring contracts), a tension, a
     /// length of a winch (m/K), a stress (Pa/K), a strain (1/K). (M. C. Yip, G. Niemeyer, IEEE Transactions on Robotics 33 (2017) 689-699, for coiled threads.)
     pub fn heated(capacity: f64, loss: f64, per_kelvin: f64) -> Self {
         Self(LagLaw::Heat { capacity, loss, per_kelvin })

@@ -28,12 +28,12 @@ const FULL: &str = "with a surface it must be below 1: fill less, or leave the s
 /// Bulk modulus (Pa) and density (kg/m^3) of water.
 const WATER: [f64; 2] = [2.2e9, 1000.0];
 
-/// A liquid in a [chamber](crate::Chamber), in place of a pressure that phases give it: it fills the chamber whole, or has a [surface](Self::surface).
+/// A liquid in a [chamber](crate::Chamber), in place of a pressure set by phases: it fills the chamber completely, or has a free [surface](Self::surface).
 ///
-/// Its volume hardly changes: the pressure is p = K (V_m - V)/V_m, with the bulk modulus K, the volume V of the chamber and the natural volume V_m that is in
-/// it, which [phases](crate::Phase::flow) change, as a syringe or a pump does. Where there is gravity, it has weight: p is the mean, and the pressure
-/// on the walls grows with depth. p counts from that outside, and may be below 0: no bubbles form. Its own motion in the chamber, its inertia, is
-/// left out; [`Fluid::added_mass`](crate::Fluid::added_mass) on the walls may stand in for it.
+/// Its volume hardly changes: the pressure is p = K (V_m - V)/V_m, with the bulk modulus K, the volume V of the chamber and the natural volume V_m in
+/// it, which [phases](crate::Phase::flow) change, as a syringe or a pump does. Under gravity it has weight: p is the mean, and the pressure
+/// on the walls grows with depth. p is the gauge pressure, and may be negative: there is no cavitation. Its motion and inertia in the chamber are
+/// neglected; [`Fluid::added_mass`](crate::Fluid::added_mass) on the walls can represent the inertia.
 ///
 /// ```
 /// use pliant::simulate::Reading;
@@ -98,19 +98,19 @@ impl Liquid {
         self
     }
 
-    /// The natural volume that is in the chamber at the start, as a part of its undeformed volume. Default: 1, with which there is no pressure at first;
+    /// The natural volume in the chamber at the start, as a fraction of its undeformed volume. Default: 1, for which the initial pressure is 0;
     /// with a [surface](Self::surface) it has to be below 1.
     pub fn fill(mut self, fill: f64) -> Self {
         self.fill = fill;
         self
     }
 
-    /// Lets it have a level surface under air of the pressure outside, which fills the rest of the chamber: a vessel that is open or vented, and not full. Default: it
-    /// fills the chamber whole.
+    /// A free surface under air of the pressure outside, which fills the rest of the chamber: an open or vented vessel that is not full. Default: the liquid
+    /// fills the chamber completely.
     ///
-    /// Its volume is [`fill`](Self::fill) times that of the undeformed chamber and what has flowed in, whatever the pressure. The walls feel rho g (h - z) at the height z below
-    /// the level h, which follows from that volume, and nothing above it; faces with mid nodes count as straight between the nodes. It needs
-    /// gravity. The level is that of a liquid at rest: it does not slosh. A lid or a line that closes the chamber is a wall, over which nothing spills. Where the
+    /// Its volume is [`fill`](Self::fill) times that of the undeformed chamber plus the inflow, independently of pressure. The pressure on the walls is rho g (h - z) at the height z below
+    /// the level h, which follows from that volume, and 0 above it; faces with mid nodes count as straight between the nodes. It needs
+    /// gravity. The surface is that of a liquid in equilibrium: it does not slosh. A lid or a line that closes the chamber is a wall, over which nothing spills. Where the
     /// chamber becomes too small for the liquid, the run ends with an error: [`Reading::liquid_level`](crate::simulate::Reading::liquid_level) shows how near that is.
     ///
     /// ```

@@ -20,19 +20,19 @@ use crate::elements::material::{FibreDirection, Hill};
 use crate::elements::mesh::{Mesh, NodeMap};
 use crate::integrators::ode::Failure;
 
-/// A muscle: fibres through cells of a body, which pull along their course by a stress that phases give
+/// A muscle: fibres through cells of a body with an active stress along them, which phases set
 /// ([`Phase::actuate`](crate::Phase::actuate)), in addition to the elasticity of the material.
 ///
 /// With the stretch l = |F a| of the fibres along a, which has length 1 in the undeformed shape, the stress s (Pa) adds
-/// s (l - 1) to the energy per natural volume, and so s (F a) a^T / l to the first Piola stress: the muscle pulls by
-/// the force s per section of the undeformed shape, however long it is. Above 0 it contracts, below 0 it pushes. Its
+/// s (l - 1) to the energy per natural volume, and so s (F a) a^T / l to the first Piola stress: the muscle exerts
+/// the force s per undeformed cross section, independent of its length. Positive stresses contract it, negative ones extend it. Its
 /// work counts as supplied.
 ///
-/// By [Hill's law](Self::hill) it pulls less where its fibres are far from their best length, and as they shorten.
+/// By [Hill's law](Self::hill) its stress is smaller away from the optimal length of its fibres, and as they shorten.
 ///
-/// (Active stress beside the elasticity: G. Chagnon, M. Rebouah, D. Favier, Journal of Elasticity 120 (2015) 129-160
-/// compare it with other ways. Many give the second Piola stress, s a a^T, which falls with the stretch as a force
-/// per section does not.)
+/// (Active stress in addition to the elasticity: G. Chagnon, M. Rebouah, D. Favier, Journal of Elasticity 120 (2015) 129-160
+/// compare it with other models. Many prescribe the second Piola stress, s a a^T, for which the force per section
+/// depends on the stretch.)
 ///
 /// ```
 /// use pliant::{Body, Cells, CellSelection, Material, Mesh, Muscle, Phase, Scene, Statics};

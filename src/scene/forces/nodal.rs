@@ -17,10 +17,10 @@ use crate::elements::mesh::FaceKind;
 
 /// Contact at a node, by obstacles and by touching bodies.
 ///
-/// Where contact acts at points between the nodes, each node has its shares of these: of their areas, as of their
+/// Where contact acts at points between the nodes, each node has its shares of their areas and of their
 /// forces. So the sum of pressure times area over the nodes is the sum of the normal forces.
 ///
-/// Of a face with mid nodes an even pressure loads these far more than the corners (of an edge, with 4/6 and 1/6 each).
+/// On a face with mid nodes a uniform pressure loads these far more than the corners (of an edge, with 4/6 and 1/6 each).
 /// So the pressure there is first that of the corners, to which mid nodes add what they have, and then the mean of these
 /// in between.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -55,15 +55,15 @@ impl NodalContact {
 
     /// Area (m^2) of the undeformed surface through which the force acts: length times thickness in the plane.
     ///
-    /// With a stiffness per area, and of bodies that touch, it is that of the points that feel contact, and may be a
-    /// part of what surrounds the node. A stiffness per node acts through the whole of it. Where faces meet at an
-    /// edge, their areas are those seen along the normal of what presses. Strings have none, nor have edges of bodies that
+    /// With a stiffness per area, and of bodies that touch, it is that of the points in contact, and may be a
+    /// part of the area around the node. A stiffness per node acts through the whole of it. Where faces meet at an
+    /// edge, their areas are projected along the contact normal. Strings have none, nor have edges of bodies that
     /// cross edges, whose forces count all the same.
     pub fn area(&self) -> f64 {
         self.area
     }
 
-    /// The mean pressure (Pa) on the [area](Self::area); 0 where nothing touches.
+    /// The mean pressure (Pa) on the [area](Self::area); 0 without contact.
     pub fn pressure(&self) -> f64 {
         if self.area > 0.0 { self.normal_force / self.area } else { 0.0 }
     }
@@ -108,7 +108,7 @@ impl NodalContact {
 }
 
 impl ContactStatus {
-    /// 0 where nothing touches, 1 where it sticks, 2 where it slides.
+    /// 0 without contact, 1 for sticking, 2 for sliding contact.
     pub fn number(self) -> u8 {
         match self {
             Self::Open => 0,

@@ -32,7 +32,7 @@ use crate::scene::constraint::Spline;
 ///         mu_k                                        from there on
 /// ```
 ///
-/// This force is smooth in the speed, in place of one that jumps at rest: what sticks creeps, slower than v0.
+/// This force is smooth in the speed, in place of one that jumps at rest: sticking surfaces creep, slower than v0.
 /// On a slope of angle a, for tan(a) below mu_s, a block creeps at
 ///
 /// ```text
@@ -41,10 +41,10 @@ use crate::scene::constraint::Spline;
 ///
 /// which is about 2/3 v0 tan(a)/mu_s; on a steeper one it slides with the acceleration
 /// g (sin(a) - mu_k cos(a)). Where contact events are located
-/// ([`Settings::contact_events`](crate::Settings::contact_events)), so are the moments at which points pass
-/// v0, and the report says when the body slips and sticks
-/// ([`PhaseReport::slips`](crate::PhaseReport::slips)). The work of friction turns into heat, counted by the
-/// velocity relative to the obstacle. In statics ([`Scene::equilibrium`](crate::Scene::equilibrium)) nothing
+/// ([`Settings::contact_events`](crate::Settings::contact_events)), so are the times at which points pass
+/// v0, and the report has the times at which the body slips and sticks
+/// ([`PhaseReport::slips`](crate::PhaseReport::slips)). The work of friction, with the velocity relative
+/// to the obstacle, is dissipated. In statics ([`Scene::equilibrium`](crate::Scene::equilibrium)) nothing
 /// slides, and there is no friction.
 ///
 /// Near rest friction acts as a damper of 3 mu_s N/(2 v0). It does not limit the steps of implicit methods,
@@ -215,7 +215,7 @@ impl Obstacle {
     }
 
     /// The static `coefficient` of friction against sliding along `direction`, one component per dimension, of any
-    /// length above 0: bristles, scales or claws that hold what slides backward (default: the same friction all ways).
+    /// length above 0: bristles, scales or claws that resist backward sliding (default: isotropic friction).
     ///
     /// It is not below the static one of the [friction coefficients](Self::friction_coefficients), with r its ratio to
     /// that; mu_k is r times as large, too. Sliding at the angle a to the direction has
@@ -255,7 +255,7 @@ impl Obstacle {
     /// A smooth path in place of a constant velocity.
     ///
     /// At the `times` (s, ascending, two at least) the obstacle has the `displacements` (m, one component per
-    /// dimension) from where its shape was given. It may stop and come back.
+    /// dimension) from the position of its shape. It may stop and come back.
     ///
     /// The path is a cubic spline, as that of [`Phase::path`](crate::Phase::path): it starts and ends with
     /// velocity 0, and the obstacle rests before the first time and after the last.

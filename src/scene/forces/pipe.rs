@@ -18,10 +18,10 @@ const WATER: f64 = 1e-3;
 /// with the friction R of a slow flow in a round pipe (G. Hagen, J. L. M. Poiseuille) and losses at ends and bends by a coefficient zeta. Of a chamber that is full p is the mean pressure
 /// and z the height of its middle, of one with a [surface](crate::Liquid::surface) p is 0 and z the level, wherever in the chamber the pipe ends: in a liquid at rest pressure and height make
 /// up for each other. A supply, whose pressure is absolute, and the atmosphere are at the height that the chamber at the other end has in the undeformed
-/// shape, its middle or its level, and hold as much as is asked for.
+/// shape, its middle or its level, and are unlimited.
 ///
 /// The amounts and the flow are unknowns under error control. The kinetic energy of the liquid in the pipe counts with that of the bodies, friction and losses
-/// as dissipated, and what a supply gives as supplied.
+/// as dissipated, and the work of a supply as supplied.
 ///
 /// ```
 /// use pliant::simulate::Reading;
@@ -70,7 +70,7 @@ impl Pipe {
         self
     }
 
-    /// Coefficient zeta of losses, the sum over ends, bends and valves: some 0.5 where a pipe begins with sharp edges, 1 where it ends in a chamber. Default: 0.
+    /// Loss coefficient zeta, the sum over ends, bends and valves: about 0.5 for a sharp-edged inlet, 1 for an outlet into a chamber. Default: 0.
     pub fn loss(mut self, coefficient: f64) -> Self {
         self.loss = coefficient;
         self

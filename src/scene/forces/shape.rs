@@ -144,9 +144,9 @@ impl Shape {
     ///
     /// `distance` returns d at a point (m) and writes its gradient, a vector of length 1. (Where
     /// d is above 0, only its sign matters for the force. But it should not be larger than the true distance
-    /// there, as it is used to find steps that lead through the shape.)
+    /// there, as it is used to detect steps that pass through the shape.)
     ///
-    /// The curvature of the shape is left out of the Newton matrix: results are the same, but the
+    /// The curvature of the shape is omitted from the Newton matrix: results are the same, but the
     /// iteration converges more slowly where the shape is strongly curved.
     pub fn custom(distance: impl Fn(&[f64], &mut [f64]) -> f64 + Send + Sync + 'static) -> Self {
         Self(Kind::Custom(Arc::new(distance)))

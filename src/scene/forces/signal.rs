@@ -109,10 +109,10 @@ impl Signal {
     /// It consists of numbers, `t`, `pi`, `e`, `+ - * / ^`, parentheses and the functions `sin`, `cos`,
     /// `tan`, `asin`, `acos`, `atan`, `sinh`, `cosh`, `tanh`, `exp`, `ln`, `log10`, `sqrt`, `abs`, `min`,
     /// `max` (of two numbers) and `step` (0 below 0, else 1). Powers come before signs: `-t^2` is -(t^2).
-    /// Steps end at its kinks and jumps, and are never so long that they pass over what it does in between.
+    /// Steps end at its kinks and jumps, and never skip a pulse in between.
     ///
     /// # Errors
-    /// A text that is no formula, with the place of the mistake.
+    /// A text that is not a formula, with the position of the mistake.
     pub fn formula(text: &str) -> Result<Self, InputError> {
         let formula = Formula::parse(text);
         let formula = formula.map_err(|problem| InputError::new("formula", text, problem))?;
@@ -269,7 +269,7 @@ impl fmt::Debug for Signal {
 
 /// Error: a `period` (s) given for a signal that is not a table.
 fn not_repeated(period: f64) -> InputError {
-    let help = "only a table is repeated: formulas and functions say themselves how they go on";
+    let help = "only tables have a period: formulas and functions can repeat by themselves";
     InputError::new("period", format!("{period} s"), help)
 }
 

@@ -76,7 +76,7 @@ enum Kind {
     Cable { is_winch: bool, friction: Friction },
 }
 
-/// A place on the path of a [cable](Spring::cable): nodes that it is led by, a place in the body, or a fixed point of space.
+/// A point on the path of a [cable](Spring::cable): nodes that guide it, a point in the body, or a fixed point of space.
 #[derive(Debug, Clone)]
 pub struct Guide(GuidePoint);
 
@@ -88,15 +88,15 @@ enum GuidePoint {
 }
 
 impl Guide {
-    /// Nodes of the body: numbers in their order, those of a set or a box by their distance from the place before them, or
+    /// Nodes of the body: numbers in their order, those of a set or a box by their distance from the point before them, or
     /// from the first of them.
     pub fn nodes(nodes: impl Into<Selection>) -> Self {
         Self(GuidePoint::Nodes(nodes.into()))
     }
 
-    /// The place in the body, within a cell or on its surface, whose undeformed position is `place` (m). It moves with the body, whatever
-    /// nodes are near, so that a finer mesh has the same guides. Of several bodies there the first has it; in a rod it is a point of a cross
-    /// section, beside its axis or on it.
+    /// The point in the body, within a cell or on its surface, whose undeformed position is `place` (m). It moves with the body, independently of
+    /// nearby nodes, so that a finer mesh has the same guides. If several bodies contain it, it belongs to the first; in a rod it is a point of a cross
+    /// section, on its axis or not.
     ///
     /// ```
     /// use pliant::{Body, Cells, Guide, Material, Mesh, Phase, Sampling, Scene, Settings, Spring};
@@ -136,15 +136,15 @@ impl Spring {
         Self::new(vec![Guide::nodes(node), Guide::point(point)], Kind::Spring)
     }
 
-    /// A cable (tendon) along a path: straight from place to place, free to slide around those between its ends. It only
-    /// pulls, with one tension along all of the path if there is no [friction](Self::friction_coefficient).
+    /// A cable (tendon) along a path: straight from point to point, free to slide around those between its ends. It carries
+    /// tension only, the same along the whole path if there is no [friction](Self::friction_coefficient).
     ///
     /// With the length l of the path, natural length L (default: that of the path in the undeformed shape),
     /// stiffness k and damping c its tension is
     ///
     /// max(0, k max(0, l - L) + f + c l')
     ///
-    /// with the tension f (N) that [`Phase::actuate`](crate::Phase::actuate) gives it, above 0 (below 0 counts as 0); 0 where neither
+    /// with the tension f (N) that [`Phase::actuate`](crate::Phase::actuate) sets (negative values count as 0); 0 where neither
     /// stretch nor f keeps it taut. A drive whose tension falls with its speed, from f at rest to 0 at the speed v
     /// (a motor), is a damping of f/v.
     ///
@@ -166,7 +166,7 @@ impl Spring {
         Self::new(path.into_iter().collect(), kind)
     }
 
-    /// Lets a winch at the first place drive a [cable](Self::cable): [`Phase::actuate`](crate::Phase::actuate) gives the length w (m)
+    /// A winch at the first point that drives a [cable](Self::cable): [`Phase::actuate`](crate::Phase::actuate) sets the length w (m)
     /// that it has drawn in, and the tension is
     ///
     /// max(0, k (l - L + w) + c (l' + w'))
@@ -179,10 +179,10 @@ impl Spring {
         self
     }
 
-    /// Coefficient mu of Coulomb's friction of a [cable](Self::cable) around the places between its ends, static and kinetic, 0 or
+    /// Coefficient mu of Coulomb's friction of a [cable](Self::cable) around the points between its ends, static and kinetic, 0 or
     /// above (default: no friction).
     ///
-    /// Where the cable turns by the angle theta and slides towards its drive, the first place, the tension behind is smaller
+    /// Where the cable turns by the angle theta and slides towards its drive, the first point, the tension beyond is smaller
     /// by exp(-mu theta), and greater where it slides the other way. Below the [sticking speed](Self::sticking_speed) it creeps, as
     /// on [obstacles](crate::Obstacle#friction). At rest (statics) there is none.
     pub fn friction_coefficient(self, coefficient: f64) -> Self {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::vector::{cross, difference, norm, padded};
+use crate::base::vector::{cross, difference, dot, norm, padded};
 use crate::elements::basis::{FacePoint, MOST_NODES, reference_node};
 use crate::elements::body::Body;
 use crate::elements::mesh::{FaceKind, Mesh};
@@ -116,7 +116,7 @@ pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
     let mut points = Vec::new();
     for face in body.mesh().boundary_faces().into_iter().filter(|face| !body.is_of_rod(face[0])) {
         let measured = measured_points(body, &face, rule)?;
-        points.extend(measured.into_iter().map(|(at, area)| point_of(at, area)));
+        points.extend(measured.into_iter().map(|point| point_of(point.at, point.area)));
     }
     points.extend(body.around_rods().map(|(at, area)| point_of(at, area)));
     Some(points)
@@ -138,7 +138,10 @@ pub(crate) fn thickness(body: &Body) -> Option<f64> {
 /// Quadrature points of some `faces` that lie at the nodes and between them, so that nothing sticks out beyond all of
 /// them: Simpson's rule on both halves of segments, a rule of degree 3 on triangles. Points in the same place are one.
 /// A string has no area: `None`.
-pub(super) fn closed_points(body: &Body, faces: &[Vec<usize>]) -> Option<Vec<SurfacePoint>> {
+///
+/// Each stands for the area of the faces around it that is seen along the normals of these, in the mean, so that a block which lies on one side
+/// presses at the edges of that side with its area alone. The second number is the whole of their areas (m^2).
+pub(super) fn closed_points(body: &Body, faces: &[Vec<usize>]) -> Option<Vec<(SurfacePoint, f64)>> {
     let rule = |corners: usize| -> Rule {
         match corners {
             1 => &[(&[1.0], 1.0)],
@@ -147,19 +150,27 @@ pub(super) fn closed_points(body: &Body, faces: &[Vec<usize>]) -> Option<Vec<Sur
         }
     };
     // by the nodes and the bits of their shares
-    let mut areas: BTreeMap<Vec<(usize, u64)>, f64> = BTreeMap::new();
+    let mut around: BTreeMap<Vec<(usize, u64)>, Vec<(f64, [f64; 3])>> = BTreeMap::new();
     for face in faces {
-        for (at, area) in measured_points(body, face, rule)? {
+        for FaceShare { at, area, normal } in measured_points(body, face, rule)? {
             let mut place: Vec<(usize, u64)> =
                 at.into_iter().map(|(node, share)| (node, share.to_bits())).collect();
             place.sort_unstable();
-            *areas.entry(place).or_default() += area;
+            around.entry(place).or_default().push((area, normal));
         }
     }
-    let at = |(place, area): (Vec<(usize, u64)>, f64)| {
-        point_of(place.into_iter().map(|(node, bits)| (node, f64::from_bits(bits))).collect(), area)
+    let point = |(place, faces): (Vec<(usize, u64)>, Vec<(f64, [f64; 3])>)| {
+        let whole: f64 = faces.iter().map(|(area, _)| area).sum();
+        let seen = |normal: &[f64; 3]| -> f64 {
+            faces.iter().map(|(area, other)| area * dot(normal, other).abs()).sum()
+        };
+        // nothing around a point on the axis of revolution
+        let mean = faces.iter().map(|(area, normal)| area * seen(normal)).sum::<f64>()
+            / whole.max(f64::MIN_POSITIVE);
+        let at = place.into_iter().map(|(node, bits)| (node, f64::from_bits(bits))).collect();
+        (point_of(at, mean), whole)
     };
-    Some(areas.into_iter().map(at).collect())
+    Some(around.into_iter().map(point).collect())
 }
 
 /// The shares of the corners of a piece in its quadrature points, and the weights of these.
@@ -168,13 +179,22 @@ type Rule = &'static [(&'static [f64], f64)];
 /// The nodes of a point and their shares in it.
 type At = Vec<(usize, f64)>;
 
-/// Quadrature points of the [pieces] of a face, each with the undeformed area (m^2) that it stands for: places on the
-/// curved face, which move with its nodes by their shape functions. `None` if the face belongs to a string.
+/// A quadrature point of a face.
+struct FaceShare {
+    at: At,
+    /// The undeformed area (m^2) for which it stands.
+    area: f64,
+    /// The unit normal of the face there, of either sign; that of a segment turned by a right angle.
+    normal: [f64; 3],
+}
+
+/// Quadrature points of the [pieces] of a face: places on the curved face, which move with its nodes by their shape functions. `None` if the face
+/// belongs to a string.
 fn measured_points(
     body: &Body,
     face: &[usize],
     rule: impl Fn(usize) -> Rule,
-) -> Option<Vec<(At, f64)>> {
+) -> Option<Vec<FaceShare>> {
     let (section, kind) = (section(body, face)?, body.mesh().face_kind(face));
     let at: Vec<[f64; 3]> = face.iter().map(|&node| natural(body.mesh(), node)).collect();
     let mut points = Vec::new();
@@ -186,18 +206,21 @@ fn measured_points(
             });
             let place = FacePoint::new(kind, xi, 0.0);
             let [along, across] = place.tangents(&at);
-            let stretch = match kind.dimension() {
-                0 => 1.0,
-                1 => norm(&along) * (corners[1][0] - corners[0][0]).abs(),
-                _ => norm(&cross(&along, &across)) * reference_area(&corners),
+            let (normal, reference) = match kind.dimension() {
+                0 => ([1.0, 0.0, 0.0], 1.0),
+                1 => (along, (corners[1][0] - corners[0][0]).abs()),
+                _ => (cross(&along, &across), reference_area(&corners)),
             };
+            let size = norm(&normal);
+            let stretch = size * reference;
             let r = at.iter().zip(place.values).map(|(x, share)| share * x[0]).sum();
             let stretch = stretch * body.around(r);
             let nodes = face.iter().copied().zip(place.values);
-            points.push((
-                nodes.filter(|(_, share)| *share != 0.0).collect(),
-                of_piece * (weight * section * stretch),
-            ));
+            points.push(FaceShare {
+                at: nodes.filter(|(_, share)| *share != 0.0).collect(),
+                area: of_piece * (weight * section * stretch),
+                normal: normal.map(|n| n / size),
+            });
         }
     }
     Some(points)

@@ -1,4 +1,4 @@
-//! Scenes of bodies of revolution: what holds on the axis, and what they do not have.
+//! Scenes of bodies of revolution: constraints on the axis, and unsupported features.
 
 use super::{Phase, Scene};
 use crate::base::input::InputError;

@@ -1,8 +1,8 @@
-//! Devices: parts of a scene that are defined in one place, by this crate or by another one.
+//! Devices: components of a scene that are defined in one file, by this crate or by another one.
 //!
-//! A [`Device`] says all that the scene has to know of it: its inputs, its outputs, its force, what it is on a finer mesh and in a half, the lines
+//! A [`Device`] defines everything that the scene needs: its inputs, its outputs, its force, its image on a finer mesh and in a half, the lines
 //! and needles by which it is drawn. Inputs are quantities as all others are (`input.rs`): phases and commands set them, tables and formulas of
-//! time end steps at their breaks, statics scale them, checkpoints hold them. Nothing else in the crate knows of a single device.
+//! time end steps at their breaks, statics scale them, checkpoints store them. Nothing else in the crate depends on a single device.
 
 use std::any::Any;
 use std::cell::OnceCell;
@@ -19,15 +19,15 @@ use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
 use crate::scene::forces::{Magnet, Signal, Signals};
 
-/// A part of a scene that exerts a force on its body, with inputs and outputs of its own: a jet, a fan, a gyroscope.
+/// A component of a scene that exerts a force on its body, with inputs and outputs of its own: a jet, a fan, a gyroscope.
 ///
-/// The trait is all that a program implements. A scene that has the device by [`Scene::device`](crate::Scene::device) then takes
-/// [inputs](DeviceInput) by [`Phase::device_input`] and [`Simulation::device_input`](crate::Simulation::device_input), gives
-/// [outputs](DeviceOutput) to sensors ([`Reading::device`](crate::simulate::Reading::device)), has it in checkpoints and on finer
-/// meshes, and draws it in pictures. Scene files have a table for a device that `serde` can read: see
+/// The trait is all that a program implements. [`Scene::device`](crate::Scene::device) adds the device to a scene; its
+/// [inputs](DeviceInput) are then set by [`Phase::device_input`] and [`Simulation::device_input`](crate::Simulation::device_input), its
+/// [outputs](DeviceOutput) are read by sensors ([`Reading::device`](crate::simulate::Reading::device)), and it is part of checkpoints, finer
+/// meshes and pictures. A device that `serde` can read may have a table in scene files: see
 /// [`DeviceTable`](crate::DeviceTable). The example `own_device` has all of it.
 pub trait Device: Any + fmt::Debug + Send + Sync {
-    /// The name by which phases, commands and sensors know it.
+    /// The name by which phases, commands and sensors refer to it.
     fn name(&self) -> &str;
 
     /// Noun for devices of its kind in messages and lists. Default: "device".
@@ -89,24 +89,24 @@ pub trait Device: Any + fmt::Debug + Send + Sync {
         Ok(Box::new(|_| [0.0; 3]))
     }
 
-    /// The device on a finer mesh, where `nodes` are what selections of nodes become.
+    /// The device on a finer mesh; `nodes` maps selections of nodes to that mesh.
     ///
     /// # Errors
-    /// Default: the device does not know what it is there.
+    /// Default: finer meshes are not supported.
     fn on_finer_mesh(
         &self,
         nodes: &dyn Fn(&Selection) -> Result<Selection, InputError>,
     ) -> Result<Arc<dyn Device>, InputError> {
         let _ = nodes;
-        let help = "it does not say what it is on another mesh: implement Device::on_finer_mesh";
+        let help = "other meshes are not supported: implement Device::on_finer_mesh";
         Err(InputError::new("device", format!("\"{}\"", self.name()), help))
     }
 
-    /// The device in the half of a scene to which it is symmetric ([`Scene::symmetric_half`](crate::Scene::symmetric_half)), where `nodes` are what
-    /// selections of nodes become: an error of those that are not their own mirror images. Inputs that are vectors are known to point along the plane.
+    /// The device in the half of a scene to which it is symmetric ([`Scene::symmetric_half`](crate::Scene::symmetric_half)); `nodes` maps
+    /// selections of nodes to the half, with an error for those that are not their own mirror images. Vector inputs have been checked to be parallel to the plane.
     ///
     /// # Errors
-    /// Default: it is not known to be its own mirror image.
+    /// Default: halves are not supported.
     fn in_half(
         &self,
         nodes: &dyn Fn(&Selection) -> Result<Selection, InputError>,
@@ -227,7 +227,7 @@ pub struct DeviceMultipliers<'a> {
 }
 
 impl<'a> DeviceMultipliers<'a> {
-    /// The multipliers (N), row by row: 0 of rows that follow from others, NaN where none are known, as at the start.
+    /// The multipliers (N), row by row: 0 for redundant rows, NaN where they are not known, as at the start.
     pub fn iter(self) -> impl Iterator<Item = f64> + 'a {
         self.rows.iter().map(move |row| match row {
             None => 0.0,

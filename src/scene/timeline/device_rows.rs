@@ -5,7 +5,7 @@ use std::fmt;
 /// An input of a [`Device`](crate::Device), one row of its list.
 #[derive(Clone, Copy)]
 pub struct DeviceInput {
-    /// The word by which phases and commands know it.
+    /// The word by which phases and commands refer to it.
     pub word: &'static str,
     /// Unit of its values; "1" without one.
     pub unit: &'static str,
@@ -13,7 +13,7 @@ pub struct DeviceInput {
     pub is_vector: bool,
     /// Each component where neither a phase nor the [device](crate::Device::preset) has a value.
     pub absent: f64,
-    /// Whether statics brings it on by load steps, as a force; an angle or a place is what it is at once.
+    /// Whether statics scales it by the load factor, as a force; an angle or a position applies in full at once.
     pub is_scaled: bool,
     /// Limit beyond which the units of a value are warned of, if any.
     pub limit: Option<InputLimit>,
@@ -41,7 +41,7 @@ pub(crate) const STEER: [&str; 2] = ["steer", "device"];
 /// An output of a [`Device`](crate::Device), one row of its list.
 #[derive(Debug, Clone, Copy)]
 pub struct DeviceOutput {
-    /// The word by which sensors know it.
+    /// The word by which sensors refer to it.
     pub word: &'static str,
     /// Unit of its values; "1" without one.
     pub unit: &'static str,

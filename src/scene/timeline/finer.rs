@@ -47,18 +47,18 @@ impl Scene {
     /// Node sets, and lists of nodes that are held or moved together, are extended by the new nodes between
     /// them. Forces on each node, springs and sensors stay at their nodes. Stiffness and
     /// damping of obstacles per node are divided by the factor by which the number of nodes on the boundary
-    /// grows. A [reduced model](Self::reduced) is left behind. Of several bodies each gets a finer mesh, but those that are rigid;
-    /// numbers of nodes become those that the same nodes have then.
+    /// grows. A [reduced model](Self::reduced) is dropped. Each of several bodies gets a finer mesh, except rigid ones;
+    /// node numbers are converted to those of the same nodes in the finer mesh.
     ///
     /// # Errors
-    /// Point masses that are named by number, or beside several bodies; forces that are not of this crate: which nodes they mean
-    /// is unknown.
+    /// Point masses that are named by number, or in addition to several bodies; forces that are not of this crate, as their
+    /// nodes are unknown.
     pub fn halved(&self) -> Result<Self, InputError> {
         Ok(self.on(|mesh, _| Ok(mesh.divided()))?.0)
     }
 
-    /// The same scene with quadratic cells: see [`Mesh::quadratic`], and [`halved`](Self::halved) for what
-    /// becomes of the rest.
+    /// The same scene with quadratic cells: see [`Mesh::quadratic`], and [`halved`](Self::halved) for the
+    /// rest of the scene.
     ///
     /// # Errors
     /// As [`halved`](Self::halved); cells of a kind that has no quadratic one.
@@ -66,9 +66,9 @@ impl Scene {
         Ok(self.on(|mesh, _| mesh.elevated())?.0)
     }
 
-    /// The same scene with these cells of the mesh (counted from 0) divided, and cells around them as far as it takes: see
-    /// [`Mesh::halved_in`], [`Mesh::cells_at`], and [`halved`](Self::halved) for what becomes of the rest. Obstacles whose stiffness is per
-    /// node push finer parts of the boundary harder than coarser ones: theirs should be per area
+    /// The same scene with these cells of the mesh (counted from 0) divided, and cells around them as far as necessary: see
+    /// [`Mesh::halved_in`], [`Mesh::cells_at`], and [`halved`](Self::halved) for the rest of the scene. Obstacles whose stiffness is per
+    /// node exert larger forces on finer parts of the boundary than on coarser ones: give it per area
     /// ([`Obstacle::stiffness_density`]).
     ///
     /// # Errors
@@ -90,7 +90,7 @@ impl Scene {
     }
 
     /// The same scene with quadratic triangles or tetrahedra that have bubbles: see [`Mesh::with_bubbles`], and
-    /// [`halved`](Self::halved) for what becomes of the rest.
+    /// [`halved`](Self::halved) for the rest of the scene.
     ///
     /// # Errors
     /// As [`halved`](Self::halved); cells of other shapes, or that have bubbles already.
@@ -112,7 +112,7 @@ impl Scene {
     ) -> Result<(Self, Finer), InputError> {
         if !self.forces.is_empty() {
             let help =
-                "they know the nodes of this mesh alone: build the scene anew on the finer one";
+                "they refer to the nodes of this mesh only: build the scene on the finer mesh";
             return Err(InputError::new(
                 "forces that are not of this crate",
                 self.forces.len(),

@@ -40,7 +40,7 @@ impl Scene {
         if let Some(field) = phase.field() {
             let input = format!("magnetic field of phase \"{}\"", phase.name);
             let Some(magnets) = self.magnetization()? else {
-                let help = "the scene has no magnet that feels it: add one";
+                let help = "the scene has no magnet on which it acts: add one";
                 return Err(InputError::new(input, format!("{:?}", field.field), help));
             };
             forces.push(Arc::new(field.force(&self.body, magnets, input)?));

@@ -1,4 +1,4 @@
-//! Gas in the chambers of a scene, and what flows in and out of them.
+//! Gas in the chambers of a scene, and its flow in and out of them.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ pub(crate) struct Amounts<'a> {
 }
 
 impl Scene {
-    /// Adds an amount of gas in a chamber, in place of a pressure that phases give it.
+    /// Adds an amount of gas in a chamber, in place of a pressure set by phases.
     pub fn gas(mut self, gas: Gas) -> Self {
         self.gases.push(gas);
         self
@@ -129,7 +129,7 @@ impl Scene {
         (&self.gases, &self.orifices, &self.supplies, self.atmosphere)
     }
 
-    /// The same scene with constant amounts of gas and liquids, without orifices, pipes and lags: for what has no unknowns for them.
+    /// The same scene with constant amounts of gas and liquids, without orifices, pipes and lags: for methods without unknowns for them.
     pub(crate) fn with_fixed_amounts(&self) -> Cow<'_, Self> {
         if !self.has_gas() && self.liquids.is_empty() && self.lags.is_empty() {
             return Cow::Borrowed(self);

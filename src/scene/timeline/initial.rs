@@ -14,13 +14,13 @@ use crate::elements::mesh::Selection;
 impl Scene {
     /// Starts from a state of an earlier motion, or from an equilibrium, of bodies with the same meshes.
     ///
-    /// It gives all unknowns at t = 0 by names: displacements, velocities and Maxwell branches of each body, masses of gas
-    /// and liquid in chambers, states of lags, flow rates of pipes, and whole turns of sensors of angles. A scene with
-    /// one body takes that of a state with one body, whatever their names are. All else may differ, such as material,
-    /// strain, loads and obstacles. Time and energies begin anew, and so do signals and paths, which are functions of time:
-    /// an obstacle is where the scene has it at t = 0.
+    /// It sets all unknowns at t = 0 by name: displacements, velocities and Maxwell branches of each body, masses of gas
+    /// and liquid in chambers, states of lags, flow rates of pipes, and whole turns of sensors of angles. If scene and
+    /// state have one body each, their names may differ. Everything else may differ, such as material,
+    /// strain, loads and obstacles. Time and energies restart at 0, and so do signals and paths, which are functions of time:
+    /// an obstacle has its position of the scene at t = 0.
     ///
-    /// Unknowns that the scene has and the state has not begin as without a state, and those that only the state has are
+    /// Unknowns that only the scene has start as without a state, and those that only the state has are
     /// not used: a [warning](Self::warnings) names both. Branches of a body are used if the cells have branches of the same
     /// kinds.
     ///
@@ -48,7 +48,7 @@ impl Scene {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     ///
-    /// [`validate`](Self::validate) and runs refuse a state of another mesh, of bodies none of which the scene has, and
+    /// Errors of [`validate`](Self::validate) and of runs are a state of another mesh, a state none of whose bodies the scene has, and
     /// gas or liquid of a chamber in which the scene has none.
     pub fn starting_from(mut self, state: &SceneState) -> Self {
         let start = &mut self.start;
@@ -109,8 +109,8 @@ impl Scene {
         self
     }
 
-    /// Velocity (m/s) of some nodes at t = 0, instead of what [`initial_velocity`](Self::initial_velocity)
-    /// and [`spin`](Self::spin) give them.
+    /// Velocity (m/s) of some nodes at t = 0, in place of that by [`initial_velocity`](Self::initial_velocity)
+    /// and [`spin`](Self::spin).
     pub fn initial_velocity_of(
         mut self,
         nodes: impl Into<Selection>,

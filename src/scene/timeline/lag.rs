@@ -6,7 +6,7 @@ use crate::base::input::{InputError, find};
 use crate::scene::forces::{Actuator, Lag, Lagging, Signal};
 
 impl Scene {
-    /// Lets the named springs, cables, muscles or growths lag behind what phases [actuate](Phase::actuate) them by, each on its own.
+    /// Adds a lag to the named springs, cables, muscles or growths, each with a state of its own that follows the [actuation](Phase::actuate) of phases.
     pub fn lag<N: Into<String>>(
         mut self,
         lag: Lag,
@@ -74,7 +74,7 @@ impl Scene {
         Some((number, Lagging::new(name, lag, actuator.hill(), size, drives.to_vec())))
     }
 
-    /// The size by which tolerances of the state are chosen: full activation, or what makes large strains.
+    /// The scale of the tolerance of the state: full activation, or the value that causes large strains.
     fn size_of_states(&self, actuator: &dyn Actuator) -> f64 {
         let large = || actuator.kind().drive.large(&self.body);
         actuator.hill().map_or_else(large, |hill| hill.largest)

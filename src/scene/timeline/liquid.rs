@@ -1,4 +1,4 @@
-//! Liquids in the chambers of a scene, and what flows in and out of them.
+//! Liquids in the chambers of a scene, and their flow in and out of them.
 
 use super::input::{Input, Quantity, Target};
 use super::{Phase, Scene, unique};
@@ -10,7 +10,7 @@ use crate::scene::forces::{Liquid, LiquidInChamber, Signal, Weight};
 const PARTS: usize = 50;
 
 impl Scene {
-    /// Adds a liquid that fills a chamber, in place of a pressure that phases give it.
+    /// Adds a liquid that fills a chamber, in place of a pressure set by phases.
     pub fn liquid(mut self, liquid: Liquid) -> Self {
         self.liquids.push(liquid);
         self
@@ -187,8 +187,8 @@ fn added(flow: &Signal, [start, end]: [f64; 2]) -> f64 {
 }
 
 impl Phase {
-    /// The flow (m^3/s, of natural volume) of liquid into a chamber, a number or any other [`Signal`]; below 0 it flows out. What flows in has the
-    /// pressure that is there, and its energy counts as supplied. Flows into the same chamber add up. Default: none.
+    /// The flow (m^3/s, of natural volume) of liquid into a chamber, a number or any other [`Signal`]; negative for outflow. Liquid that flows in has the
+    /// pressure of the chamber, and its energy counts as supplied. Flows into the same chamber add up. Default: none.
     pub fn flow(self, chamber: impl Into<String>, flow: impl Into<Signal>) -> Self {
         self.with(Input::new(Quantity::Flow, Target::one(chamber), flow.into()))
     }

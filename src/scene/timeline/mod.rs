@@ -1,4 +1,4 @@
-//! Scenes: a body, what surrounds it, and a timeline of phases.
+//! Scenes: a body, its surroundings, and a timeline of phases.
 
 mod actuators;
 mod around;
@@ -77,7 +77,7 @@ use crate::scene::forces::{
 };
 use crate::scene::reduced_model::ReducedModel;
 
-/// A body, gravity, springs, muscles, magnets, chambers, fluids, obstacles, and what happens when.
+/// A body, gravity, springs, muscles, magnets, chambers, fluids, obstacles, and a timeline of phases.
 ///
 /// ```
 /// use pliant::{Body, Cells, Material, Mesh, Obstacle, Phase, Scene};
@@ -196,9 +196,9 @@ impl Scene {
     /// at which it is in the undeformed shape, by the shape functions there.
     ///
     /// The meshes need not match. Where `nodes` are all those of faces, either side may be named: nodes of the side with more of them
-    /// follow the faces of the other one, and nodes of a deformable body those of a rigid one, so that none is left free between
-    /// others. Nodes that make up no face follow the body. A node that touches the body nowhere may be apart from it by a fifth of an edge, as where one
-    /// of two curved surfaces has longer edges; the gap stays as it is.
+    /// follow the faces of the other one, and nodes of a deformable body those of a rigid one, so that no node between
+    /// others is free. Nodes that form no face follow the body. A node that is not on the body may have a gap of up to a fifth of an edge, as where one
+    /// of two curved surfaces has longer edges; the gap does not change.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh, Phase, Scene};
@@ -451,7 +451,7 @@ impl Scene {
         &self.touches
     }
 
-    /// The distance of each touch, given or by default, beside the thickness of its bodies.
+    /// The distance of each touch, given or by default, with the thickness of its bodies.
     ///
     /// # Errors
     /// As [`validate`](Self::validate).

@@ -1,4 +1,4 @@
-//! Phases: what is held, moved, loaded and touched during a stretch of time.
+//! Phases: spans of time with their constraints, loads and contacts.
 
 use std::fmt;
 use std::sync::Arc;
@@ -164,10 +164,10 @@ impl Phase {
     }
 
     /// Nodes on a plane of symmetry (a line, in the plane) with this `normal`, of any length: their
-    /// displacements along it stay what they are when the phase begins, and they slide freely in the plane.
+    /// displacements along it keep the values at the start of the phase, and they slide freely in the plane.
     ///
-    /// Half of a body then moves as the whole does. Its mass is half by itself, but what was given node by
-    /// node has to be halved on the plane: loads, point masses, springs, contact stiffness per node (not per
+    /// Half of a body then moves as the whole body does. Its mass is half by itself, but quantities given node by
+    /// node have to be halved on the plane: loads, point masses, springs, contact stiffness per node (not per
     /// area).
     pub fn symmetry(mut self, nodes: impl Into<Selection>, normal: impl Into<Vec<f64>>) -> Self {
         let what = Constrained::Along(nodes.into(), normal.into());
@@ -304,7 +304,7 @@ impl Phase {
         self.contact_with::<String>([]).touching(false)
     }
 
-    /// Whether bodies [touch](crate::Touch) each other in this phase (default: they do). Where they lie in each other as they begin to, the
+    /// Whether bodies [touch](crate::Touch) each other in this phase (default: they do). If they overlap where this contact begins, the
     /// run ends with an error.
     pub fn touching(self, touch: bool) -> Self {
         Self { has_touch: touch, ..self }

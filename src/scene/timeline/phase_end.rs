@@ -8,11 +8,11 @@ impl Phase {
     /// Ends the phase as a sensor rises above a `level` (in its unit), at [`until`](Self::until) at the latest.
     ///
     /// The sensor is one of the [`Sampling`](crate::Sampling) of the run, by the name of its column: `tip.y` of one with several components. The
-    /// moment is found to the round-off of the step that it lies in, by the dense output of the integrator; within a step, readings at eight
-    /// times are compared. The reading has to pass the level: one that begins above it does not count before it has been below. The next phase begins at
-    /// that moment, and has all the time up to its own end; there has to be one, as the end of a scene is known. Signals and tables
-    /// of later phases remain functions of the time since the start of the run. [`PhaseReport::ended_by`](crate::PhaseReport::ended_by) says which
-    /// phases ended so.
+    /// time is located to round-off within the step, by the dense output of the integrator; within a step, readings at eight
+    /// times are compared. The reading has to pass the level: one that is above it at the start does not count before it has been below. The next phase begins at
+    /// that time, and lasts until its own end; the last phase cannot end so, as the end of a scene is fixed. Signals and tables
+    /// of later phases remain functions of the time since the start of the run. [`PhaseReport::ended_by`](crate::PhaseReport::ended_by) names the sensor
+    /// that ended a phase.
     ///
     /// ```
     /// use pliant::simulate::{Component, Reading};

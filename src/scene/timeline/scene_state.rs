@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use crate::base::input::{InputError, finite, positive};
 use crate::elements::body::{Body, BranchState, Part};
 
-/// The state of a scene at one time, by the names of what has it:
+/// The state of a scene at one time, by the names of its bodies and components:
 /// [`Scene::starting_from`](crate::Scene::starting_from) starts another scene from it.
 ///
-/// [`Trajectory::state`](crate::Trajectory::state) takes it from a motion or an equilibrium; files of earlier runs hold
+/// [`Trajectory::state`](crate::Trajectory::state) returns that of a motion or an equilibrium; files of earlier runs contain
 /// it, too.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SceneState {
@@ -18,13 +18,13 @@ pub struct SceneState {
     pub gases: BTreeMap<String, f64>,
     /// Mass (kg, above 0) of the liquid in a chamber, by the name of the chamber.
     pub liquids: BTreeMap<String, f64>,
-    /// State of a [lag](crate::Lag), by the name of the actuator, in the unit of what drives the actuator.
+    /// State of a [lag](crate::Lag), by the name of the actuator, in the unit of its actuation.
     pub lags: BTreeMap<String, f64>,
     /// Flow rate (m^3/s) through a pipe from its first end to its second, by the name of the pipe.
     pub pipes: BTreeMap<String, f64>,
     /// Position (m) of an obstacle that had moved, by its name: the centre of a disc or cavity, the first corner of a
     /// box, the first end of a capsule, the point of a half-plane nearest to the origin; of a union that of its first
-    /// part. It is compared with where the obstacle of the scene that starts is, and moves nothing.
+    /// part. It is compared with the position of the obstacle in the scene that starts, and does not move it.
     pub obstacles: BTreeMap<String, Vec<f64>>,
     /// Angle, in turns including whole ones, that a sensor of an angle reads, by the name of the sensor.
     pub angles: BTreeMap<String, f64>,

@@ -78,14 +78,14 @@ pub(crate) struct SmallerScene {
 impl Scene {
     /// The half of a symmetric scene below its plane of symmetry, which is normal to `axis` and goes through the middle of all bodies.
     ///
-    /// It moves as the whole scene does, as long as that stays symmetric: a column that buckles does not, nor does what is pushed
-    /// by round-off out of an unstable place. Nodes on the plane slide in it ([`Phase::symmetry`](crate::Phase::symmetry)), with half of their loads, point masses and
+    /// It moves as the whole scene does, as long as that stays symmetric: a column that buckles does not, nor does a body that leaves an
+    /// unstable position by round-off. Nodes on the plane slide in it ([`Phase::symmetry`](crate::Phase::symmetry)), with half of their loads, point masses and
     /// contact stiffness per node; the cut is no surface. Energies and forces are half of those of the whole scene.
     ///
-    /// Bodies, ties, touches, springs, cables, muscles, growths, chambers, orifices, pipes and fluids are each their own mirror images or that of another one that is
-    /// driven alike, of which one is left. A spring or cable in the plane has half of its forces, and the plane closes a chamber that it cuts, which has half of the gas
-    /// or liquid, as flows are half of those of the whole. Remanences of magnets and fields are mirrored as arrows are, or both with the other sign. A body that the
-    /// plane cuts touches what is on its own side: where surfaces touch at the plane and rise towards it, the part of facets beyond it is missing.
+    /// Bodies, ties, touches, springs, cables, muscles, growths, chambers, orifices, pipes and fluids are each their own mirror images, or that of another one with the
+    /// same inputs, of which the half has one. A spring or cable in the plane has half of its forces, and the plane closes a chamber that it cuts, which has half of the gas
+    /// or liquid, as flows are half of those of the whole. Remanences of magnets and fields are mirrored as arrows are, or both with the opposite sign. A body that the
+    /// plane cuts has contact on its own side only: where surfaces touch at the plane and rise towards it, the contribution of facets beyond it is missing.
     ///
     /// ```
     /// use pliant::{Axis, Body, Cells, Material, Mesh, Obstacle, Phase, Scene};
@@ -104,22 +104,22 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// Scenes that [`validate`](Self::validate) refuses. A mesh in which a node has no mirror image, or a cell lies
+    /// Scenes that do not pass [`validate`](Self::validate). A mesh in which a node has no mirror image, or a cell lies
     /// across the plane; anything else that is not symmetric: materials, prescribed displacements, loads, pressures on
     /// faces, gravity, the start, obstacles, components. Unsupported features: springs that cross the plane, bodies on both sides of it that touch or are tied,
-    /// rods, moments and followers, [devices](crate::Device) that do not say what they are in a half, forces that are not of this crate.
+    /// rods, moments and followers, [devices](crate::Device) without an image in a half, forces that are not of this crate.
     pub fn symmetric_half(&self, axis: Axis) -> Result<Self, InputError> {
         Ok(self.by_map(self.map_across(Shrink::Half, axis, false)?)?.scene)
     }
 
-    /// The section across `axis` of a scene in space that is the same all along it, as a scene in a plane: with as many unknowns as one
+    /// The section across `axis` of a scene in space that is uniform along it, as a scene in the plane: with as many unknowns as one
     /// layer of nodes has there, or fewer.
     ///
     /// The mesh is a prism of hexahedra or tetrahedra, as those of [`Mesh::cuboid`](crate::Mesh::cuboid) are along all axes. The axes of the plane are
     /// the other two in their order. It is in *plane strain* where both ends of the prism are held along the axis: then it moves as the
-    /// scene in space does, as long as that stays the same all along. Otherwise it is in *plane stress*, as thick as the
-    /// prism is long: what is thin beside its section moves so up to a part of the order of (thickness/width)^2, but near nodes that are
-    /// held along the axis besides, as those of a clamped side. Forces and masses are those of the whole.
+    /// scene in space does, as long as that stays uniform. Otherwise it is in *plane stress*, with the length of the prism as its
+    /// thickness: this holds for bodies that are thin relative to their section, up to a relative error of the order of (thickness/width)^2, except near nodes that are
+    /// also held along the axis, as those of a clamped side. Forces and masses are those of the whole body.
     ///
     /// ```
     /// use pliant::{Axis, Body, Material, Mesh, Phase, Plane, Scene, SolidCells};
@@ -137,7 +137,7 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// Scenes that [`validate`](Self::validate) refuses. A mesh that is not such a prism; anything that varies along
+    /// Scenes that do not pass [`validate`](Self::validate). A mesh that is not such a prism; anything that varies along
     /// the axis or points along it: materials, prescribed displacements, loads, pressures on faces, gravity, the start,
     /// obstacles (half-spaces, capsules along the axis and boxes that extend beyond the ends do not vary). Unsupported
     /// features: several bodies, rigid and fibrous materials, point masses, springs and other actuators, chambers,

@@ -1,4 +1,4 @@
-//! The same scene with something left out.
+//! The same scene without one of its terms.
 
 use std::fmt;
 use std::sync::Arc;

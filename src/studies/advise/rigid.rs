@@ -70,7 +70,7 @@ impl Search<'_> {
         self.patience = f64::INFINITY;
         let solved = solved?;
         if solved.is_none() && self.cut == Some(Cut::Late) {
-            let late = "it takes more than twice as long as what strains";
+            let late = "it takes more than twice as long as the deformable model";
             found.not_tried.push(format!("{choice}, to its end: {late}"));
         }
         Ok(solved)

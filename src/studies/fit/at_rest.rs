@@ -80,7 +80,7 @@ fn numbers(name: &str, values: &[SetValue]) -> Result<Vec<f64>, InputError> {
     let number = |(row, value): (usize, &SetValue)| {
         value.number().filter(|number| number.is_finite()).ok_or_else(|| {
             let input = format!("column \"{name}\" of the data, row {}", row + 1);
-            InputError::new(input, value, "what a sensor has read is a finite number")
+            InputError::new(input, value, "a measured value is a finite number")
         })
     };
     values.iter().enumerate().map(number).collect()

@@ -147,7 +147,7 @@ pub fn least_squares(
 
 /// A search that failed without an error of the residuals.
 fn stuck(error: &MPError) -> Error {
-    let help = "what is left over must be a finite number everywhere in the ranges: narrow them";
+    let help = "each residual must be a finite number everywhere in the ranges: narrow them";
     InputError::new("residuals", error, help).into()
 }
 

@@ -117,7 +117,7 @@ impl View<'_> {
         LENGTH.number(self, spring)
     }
 
-    /// Tension (N) of a cable at its first place, where it is driven, and at its last; they differ by friction.
+    /// Tension (N) of a cable at its first point, where it is driven, and at its last; they differ by friction.
     ///
     /// # Errors
     /// A name that no spring has.
@@ -126,7 +126,7 @@ impl View<'_> {
         Ok([Spring::PULL, Spring::PULL_AT_END].map(|end| self.actuator_value(number, end)))
     }
 
-    /// Stress (Pa) by which a muscle pulls: its actuation, or with [Hill's law](crate::Hill) the mean stress of that law over its volume.
+    /// Active stress (Pa) of a muscle: its actuation, or with [Hill's law](crate::Hill) the mean stress of that law over its volume.
     ///
     /// # Errors
     /// A name that no muscle has.
@@ -165,8 +165,8 @@ impl Reading {
         ReadingKind::Of(&PULL, spring.into()).into()
     }
 
-    /// Tension of a cable at its last place (N), which friction along its path makes another one than its
-    /// [pull](Self::spring_pull) at the drive.
+    /// Tension of a cable at its last point (N), which differs from its [pull](Self::spring_pull) at the drive by
+    /// friction along its path.
     pub fn tension_at_end(cable: impl Into<String>) -> Self {
         ReadingKind::Of(&TENSION_AT_END, cable.into()).into()
     }
@@ -176,7 +176,7 @@ impl Reading {
         ReadingKind::Of(&LENGTH, spring.into()).into()
     }
 
-    /// Stress by which a muscle pulls (Pa): see [`View::muscle_stress`](crate::View::muscle_stress).
+    /// Active stress of a muscle (Pa): see [`View::muscle_stress`](crate::View::muscle_stress).
     pub fn muscle_stress(muscle: impl Into<String>) -> Self {
         ReadingKind::Of(&STRESS, muscle.into()).into()
     }

@@ -53,8 +53,8 @@ impl View<'_> {
         VOLUME.number(self, chamber)
     }
 
-    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, NaN where it has none; of a liquid with weight the mean,
-    /// of one with a surface that at the lowest place of the walls.
+    /// Pressure in a chamber (Pa): for gas and liquids the gauge pressure, NaN where it is undefined; for a liquid with weight the mean,
+    /// for one with a surface the pressure at the lowest point of the walls.
     ///
     /// # Errors
     /// A name that no chamber has.

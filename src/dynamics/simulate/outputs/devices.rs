@@ -6,7 +6,7 @@ use crate::base::input::InputError;
 use crate::scene::timeline::{DeviceMultipliers, DeviceOutput};
 
 impl View<'_> {
-    /// An output of a [device](crate::Device), by the name of the one and the word of the other.
+    /// An output of a [device](crate::Device), by the name of the device and the word of the output.
     ///
     /// # Errors
     /// A name that no device has, a word that none of its outputs has.

@@ -74,7 +74,7 @@ impl Reading {
 }
 
 impl Simulation {
-    /// Sets the position (m) of a dipole, in place of the present one: where it is at once, if it is a vector.
+    /// Sets the position (m) of a dipole, in place of the present one: a constant vector applies at once.
     ///
     /// # Errors
     /// A name that no dipole has, a wrong number of components, numbers that are not finite.

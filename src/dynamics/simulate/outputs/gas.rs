@@ -1,4 +1,4 @@
-//! Outputs of gas in chambers, and of what it flows through.
+//! Outputs of gas in chambers, and of orifices.
 
 use super::super::output::{Kind, Output, Read};
 use super::super::reading::{Reading, ReadingKind};

@@ -79,7 +79,7 @@ impl View<'_> {
         FLOW.number(self, chamber)
     }
 
-    /// Height (m) above the origin, against gravity, of the surface of the liquid in a chamber; NaN where the chamber has no room for the liquid.
+    /// Height (m) above the origin, against gravity, of the surface of the liquid in a chamber; NaN where the chamber is too small for the liquid.
     ///
     /// # Errors
     /// A name that no chamber has, one without liquid, a liquid without a [surface](crate::Liquid::surface).

@@ -119,7 +119,7 @@ fn read_format(reader: &mut Reader) -> Result<bool, String> {
                 "export it as 4.1 or 2.2: `gmsh -format msh41`, or \"Version 4 ASCII\" when saving";
             return Err(format!("it has version {version} of the format: {help}"));
         }
-        [] => return Err("its format is missing: export it anew".into()),
+        [] => return Err("its format is missing: export it again".into()),
     };
     reader.end(b"MeshFormat")?;
     Ok(is_old)

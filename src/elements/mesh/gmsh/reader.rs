@@ -43,7 +43,7 @@ impl<'a> Reader<'a> {
             }
             Encoding::Binary { .. } => format!("byte {}", self.at),
         };
-        format!("it is broken at {place}, in {}: {problem}; export it anew", self.section)
+        format!("it is broken at {place}, in {}: {problem}; export it again", self.section)
     }
 
     /// The next line that is not empty, without white space around it; none at the end of the file.

@@ -23,7 +23,7 @@ impl Chamber {
     ) -> Result<Moment, InputError> {
         body.refuse_around(&self.input("liquid"), "with weight")?;
         if self.is_closed_by_lid {
-            let help = "a lid does not feel the weight of a liquid: leave gravity out, or close the chamber by walls of the body or by triangles";
+            let help = "the weight of a liquid does not act on a lid: remove gravity, or close the chamber by walls of the body or by triangles";
             return Err(InputError::new(self.input("closed_by_lid"), true, help));
         }
         let mesh = body.mesh();

@@ -10,7 +10,7 @@ use crate::integrators::ode::Failure;
 use crate::scene::forces::Signal;
 
 /// An orifice or a valve, through which gas flows from a [supply](crate::Scene::supply), the atmosphere or a chamber to
-/// another one, either way.
+/// another one, in both directions.
 ///
 /// From the absolute pressure p_1 to the lower p_2 flow
 ///
@@ -30,7 +30,7 @@ use crate::scene::forces::Signal;
 /// ```
 ///
 /// with a cubic above 0.999, too.
-/// [Phases](crate::Phase::open) say how far it is open.
+/// [Phases](crate::Phase::open) set its opening.
 #[derive(Debug, Clone)]
 pub struct Orifice {
     pub(crate) name: String,

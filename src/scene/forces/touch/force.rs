@@ -76,7 +76,7 @@ impl TouchForce {
             let on = &self.surfaces.points[near.point];
             let radii = on.radius + feature.radius;
             if norm(&offset) < self.law.distance + radii {
-                let point = (offset, on.on.nodes());
+                let point = (offset, on.on.nodes(), on.around * near.weight);
                 let mut pair = Pair::new(point, (feature.nodes(), &at), (&place, &shape), radii);
                 self.add_levers(&mut pair, [on.radius, feature.radius], u);
                 see(&pair, self.share(near));

@@ -29,9 +29,7 @@ impl TouchForce {
             let pressing = action.pressing();
             let shares = pair.nodes.into_iter().zip(pair.shares).take(pair.count);
             let of_point = &pair.nodes[..pair.of_point];
-            // edges cross at a place without an area
-            let through = if pair.window.is_some() { 0.0 } else { share };
-            let area = through * tributary.facing_part(of_point, u, &pair.normal);
+            let area = pair.around * tributary.facing_part(of_point, u, &pair.normal);
             for (m, (node, part)) in shares.enumerate() {
                 let part = if m < pair.of_point { part } else { -part };
                 nodal[node].add(part * pressing, part * area, !sticks);

@@ -48,6 +48,8 @@ pub(super) struct Pair {
     free: usize,
     /// r . r_ab for 11, 22 and 12.
     bending: [f64; 3],
+    /// The areas (m^2) of the faces around the point, times its weight; 0 of two edges, which cross at a place without an area.
+    pub(super) around: f64,
     /// Window of two edges; `None` for a point.
     pub(super) window: Option<Window>,
     levers: Levers,
@@ -112,9 +114,10 @@ pub(super) struct Change {
 
 impl Pair {
     /// The pair of a point with the nodes and shares `point`, and a place of the `shape` on a feature of the nodes `of`,
-    /// which are `at` these positions (m), with the offset r from the place (m), which must not be 0, and the radii (m) of both together.
+    /// which are `at` these positions (m), with the offset r from the place (m), which must not be 0, the areas (m^2) `around` the point, and the
+    /// radii (m) of both together.
     pub(super) fn new(
-        (r, point): ([f64; 3], impl Iterator<Item = (usize, f64)>),
+        (r, point, around): ([f64; 3], impl Iterator<Item = (usize, f64)>, f64),
         (of, at): (&[usize], &[[f64; 3]]),
         (place, shape): (&NearestPoint, &FacePoint),
         radii: f64,
@@ -134,6 +137,7 @@ impl Pair {
             slopes: [[0.0; 2]; MOST],
             free: place.dimension(),
             bending: [0.0; 3],
+            around,
             window: None,
             levers: Levers::default(),
         };
@@ -210,6 +214,7 @@ impl Pair {
             slopes: [[0.0; 2]; MOST],
             free: 2,
             bending: [0.0; 3],
+            around: 0.0,
             window: Some(window),
             levers: Levers::default(),
         };

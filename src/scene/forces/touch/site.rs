@@ -35,7 +35,7 @@ const DISTANCE_OF_BARS: f64 = 0.01;
 /// Default of k D over Young's modulus.
 const BARRIER: f64 = 0.1;
 const SPRING: f64 = 1.0;
-/// Most of the default of k D between rigid bodies: over their weight on a quarter of their surface, and over what their speeds do.
+/// Upper bound of the default of k D between rigid bodies, relative to the pressure of their weight on a quarter of their surface.
 ///
 /// At 40 times the pressure a barrier yields by 0.15 D.
 const WEIGHTS: f64 = 40.0;
@@ -92,8 +92,8 @@ impl TouchSite<'_> {
     }
 }
 
-/// The way (m) in a second of which the default of the sticking speed is a thousandth: the size of the bodies, or what their initial
-/// velocities `v` (m/s) differ by.
+/// The distance (m) per second of which the default of the sticking speed is a thousandth: the size of the bodies, or the largest
+/// difference of their initial velocities `v` (m/s).
 pub(crate) fn way(body: &Body, v: &[f64]) -> f64 {
     largest_difference(v, body.dimension()).max(body.size())
 }

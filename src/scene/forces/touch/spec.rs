@@ -12,24 +12,24 @@ use crate::scene::forces::friction::Friction;
 
 /// Contact of bodies with each other, or of a body with itself.
 ///
-/// Each pair of surfaces closer than the [contact distance](Self::distance) D pushes itself apart, on both sides alike.
+/// Surfaces closer than the [contact distance](Self::distance) D repel each other, with equal and opposite forces.
 /// With the distance d between them the pressure is
 ///
 /// ```text
 /// barrier:  k (D - d)^2 (D + 2 d)/(3 d^2)       spring:  k (D - d)
 /// ```
 ///
-/// per area of the undeformed surfaces, felt at points of both. In space edges that cross edges push each other apart, too, with
-/// the same law for D/2, so that they do where no point is near. The barrier, which is the default, grows without bound as d goes to 0, so that
-/// surfaces never pass through each other, and sets in smoothly. A step that would lead through a surface between its
-/// ends is taken again in parts. The spring is softer: what presses more than k D passes through, which the overlap
-/// [indicator](crate::Indicator) of a run tells.
+/// per area of the undeformed surfaces, acting at points of both. In space, edges that cross each other repel each other, too, with
+/// the same law for D/2, also where no point is near. The barrier, which is the default, grows without bound as d goes to 0, so that
+/// surfaces never pass through each other, and sets in smoothly. A step that would pass through a surface between its
+/// ends is repeated in parts. The spring is softer: at pressures above k D surfaces pass through each other, which the overlap
+/// [indicator](crate::Indicator) of a run reports.
 ///
-/// Damping adds the pressure -c d' times the curvature of the energy over k, so that it sets in as smoothly; surfaces
-/// that part are not held back. Friction is that of [obstacles](crate::Obstacle#friction), with the sliding velocity
+/// Damping adds the pressure -c d' times the curvature of the energy over k, so that it sets in as smoothly; separating surfaces
+/// do not stick to each other. Friction is that of [obstacles](crate::Obstacle#friction), with the sliding velocity
 /// between the surfaces.
 ///
-/// Rods touch as round tubes about their axes, from the radius of their section on; in the plane every rod does.
+/// Rods touch as round tubes about their axes, with the radius of their section; in the plane this holds for every section.
 ///
 /// ```
 /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, Touch};
@@ -97,17 +97,17 @@ impl Touch {
     }
 
     /// Stiffness k (N/m^3), above 0. Default: a tenth of the least of Young's moduli over D; all of it for a
-    /// [`spring`](Self::spring). Between rigid bodies k D is not above 40 times their weight over a quarter of their surface, and what
-    /// stops their initial speeds within two thirds of D: a stiffer contact would move by less than what a run resolves.
+    /// [`spring`](Self::spring). Between rigid bodies k D is at most the larger of 40 times their weight over a quarter of their surface, and the value that
+    /// stops their initial speeds within two thirds of D: a stiffer contact would move by less than a run resolves.
     pub fn stiffness_density(mut self, stiffness: f64) -> Self {
         self.stiffness = Some(stiffness);
         self
     }
 
-    /// The distance D (m) from which on nothing acts, above 0: bodies come to rest at a part of it from each other.
+    /// The distance D (m) beyond which there is no force, above 0: bodies come to rest at a fraction of it from each other.
     /// Default: a tenth of the mean edge of the surfaces and of the thickness (2 V/A) of the thinnest body; of bars in one dimension, a
     /// hundredth of their size. Undeformed bodies that are nearer than that to each other have their gap as D, down to a hundredth of
-    /// it, so that nothing presses them apart at the start.
+    /// it, so that there is no contact force at the start.
     pub fn distance(mut self, distance: f64) -> Self {
         self.distance = Some(distance);
         self

@@ -14,6 +14,10 @@ use crate::scene::forces::surface::{SurfacePoint, closed_points, is_within, piec
 /// that slides, press more evenly than those of the other one, as long as none stands for more than lies over it.
 const ALIKE: f64 = 2.0;
 
+/// Size of the facets of a rigid body for that, over what they measure: as flat as it is between them, it needs no points there where the other
+/// body yields.
+const RIGID: f64 = 4.0;
+
 /// Refused bodies, and what to do.
 const STRING: [&str; 2] = ["a string among them", "a string has no surface: name the other bodies"];
 const NOT_ROUND: [&str; 2] = [
@@ -33,7 +37,7 @@ pub(super) struct Surfaces {
     pub(super) features: Vec<Feature>,
     /// Whether a body touches itself.
     pub(super) itself: bool,
-    /// Size (m) of the finer facets of each body; 0 of bodies that do not touch.
+    /// Size (m) of the finer facets of each body, [larger](RIGID) of a rigid one; 0 of bodies that do not touch.
     sizes: Vec<f64>,
     /// The cross sections of rods, by the nodes of their axes, up to the last of these.
     pub(super) sections: Vec<Option<Spokes>>,
@@ -44,6 +48,8 @@ pub(super) struct Surfaces {
 /// A quadrature point.
 pub(super) struct Point {
     pub(super) on: SurfacePoint,
+    /// The areas (m^2) of the faces around it: more at an edge than it stands for.
+    pub(super) around: f64,
     pub(super) body: usize,
     /// Of the tube (m) on whose axis it lies; 0 on a surface.
     pub(super) radius: f64,
@@ -89,7 +95,8 @@ impl Surfaces {
             sections: Vec::new(),
             reach: 1.0,
         };
-        let parts: Vec<_> = body.parts().map(|part| part.nodes).collect();
+        let (parts, are_rigid): (Vec<_>, Vec<_>) =
+            body.parts().map(|part| (part.nodes, part.body.is_rigid())).unzip();
         let faces = body.mesh().boundary_faces();
         for &number in bodies {
             if let Some(pieces) = body.tube_pieces(&parts[number]) {
@@ -100,14 +107,15 @@ impl Surfaces {
                 |face: &&Vec<usize>| parts[number].contains(&face[0]) && !is_within(face, planes);
             let own: Vec<Vec<usize>> = faces.iter().filter(is_own).cloned().collect();
             let points = closed_points(body, &own).ok_or(STRING)?.into_iter();
-            surfaces.points.extend(points.map(|on| Point::new(on, number, 0.0)));
+            surfaces.points.extend(points.map(|(on, around)| Point::new(on, around, number, 0.0)));
             for face in &own {
                 let kind = body.mesh().face_kind(face);
                 surfaces.reach = surfaces.reach.max(reach(kind));
                 surfaces.features.push(Feature::new(kind, face, number, 0.0));
             }
             surfaces.nodes.extend(own.concat());
-            surfaces.sizes[number] = surfaces.usual_size(number);
+            let rigid = if are_rigid[number] { RIGID } else { 1.0 };
+            surfaces.sizes[number] = rigid * surfaces.usual_size(number);
         }
         surfaces.nodes.sort_unstable();
         surfaces.nodes.dedup();
@@ -271,7 +279,7 @@ impl Surfaces {
     /// Area (m^2) of the surface of the body with a number.
     pub(super) fn area(&self, body: usize) -> f64 {
         let own = self.points.iter().filter(|point| point.body == body);
-        own.map(|point| point.on.area).sum()
+        own.map(|point| point.around).sum()
     }
 
     /// Mean length (m) of the sides of the facets, of half a side where there is a mid node; 0 without any.
@@ -382,8 +390,8 @@ impl Surfaces {
 }
 
 impl Point {
-    pub(super) fn new(on: SurfacePoint, body: usize, radius: f64) -> Self {
-        Self { on, body, radius, unfelt: Vec::new() }
+    pub(super) fn new(on: SurfacePoint, around: f64, body: usize, radius: f64) -> Self {
+        Self { on, around, body, radius, unfelt: Vec::new() }
     }
 }
 

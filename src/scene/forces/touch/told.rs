@@ -15,7 +15,7 @@ use crate::scene::forces::thickness;
 pub struct TouchDistance {
     /// Name of the touch.
     pub touch: String,
-    /// The distance (m) from which on nothing acts.
+    /// The distance (m) beyond which there is no force.
     pub distance: f64,
     /// Whether it is the default.
     pub is_default: bool,
