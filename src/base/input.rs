@@ -63,9 +63,20 @@ pub(crate) fn find<'a>(
     input: &str,
     what: &str,
 ) -> Result<usize, InputError> {
+    find_in("scene", name, known, input, what)
+}
+
+/// The same among those that the `owner`, another thing than the scene, has.
+pub(crate) fn find_in<'a>(
+    owner: &str,
+    name: &str,
+    known: impl Iterator<Item = &'a str> + Clone,
+    input: &str,
+    what: &str,
+) -> Result<usize, InputError> {
     known.clone().position(|other| other == name).ok_or_else(|| {
         let known: Vec<&str> = known.collect();
-        InputError::new(input, format!("\"{name}\""), unknown_among(name, &known, "scene", what))
+        InputError::new(input, format!("\"{name}\""), unknown_among(name, &known, owner, what))
     })
 }
 

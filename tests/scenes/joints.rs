@@ -503,6 +503,8 @@ fn what_is_no_joint_is_refused() {
         ),
         (revolute(["bar", "lower"]).stops([0.5, -0.5], 1.0), "stops of joint", "lower one"),
         (revolute(["bar", "lower"]).stops([-4.0, 4.0], 1.0), "stops of joint", "whole turn"),
+        (revolute(["bar", "lower"]).stops([0.2, 1.0], 1.0), "stops of joint", "0.2 beyond a stop"),
+        (revolute(["bar", "lower"]).stops([-2.0, -1.0], 1.0), "stops of joint", "1 beyond a stop"),
         (revolute(["bar", "lower"]).damping(-1.0), "damping of joint", "0 or above"),
         (revolute(["bar", "lower"]).no_load_speed(3.0), "no_load_speed of joint", "limit"),
         (
@@ -527,6 +529,19 @@ fn what_is_no_joint_is_refused() {
     let beside = Joint::spherical("hook", ["world", "top"], [0.05, 0.06]);
     let error = refusal(block.joint(beside)).to_string();
     assert!(error.contains("at of joint \"hook\"") && error.contains("beside"), "{error}");
+    // one that leans on a stop is not thrown back
+    for (angle, is_refused) in [(-0.01, false), (-0.5, true)] {
+        let about = |x: &[f64]| {
+            let (s, c) = if x[0] > LENGTH + 5e-4 { f64::sin_cos(angle) } else { (0.0, 1.0) };
+            let [x, y] = [x[0] - LENGTH, x[1]];
+            vec![c * x - s * y - x, s * x + c * y - y]
+        };
+        let joint = revolute(["bar", "lower"]).stops([0.0, 1.0], 1.0);
+        let bent = Scene::new(Body::join([bar("bar", 0.0), bar("lower", LENGTH + 1e-3)]).unwrap());
+        let bent = bent.initial_displacement(about).joint(joint);
+        let result = bent.phase(Phase::until(1.0)).validate();
+        assert_eq!(result.is_err(), is_refused, "{result:?}");
+    }
     // a servo is what leads to an angle
     let aimless = scene().joint(revolute(["bar", "lower"]).servo(0.0, 1.0));
     let phase = Phase::until(1.0).device_input("elbow", &Joint::TARGET_ANGLE, 0.5);

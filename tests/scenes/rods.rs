@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use pliant::simulate::Reading;
 use pliant::{
     Axis, Body, Equilibrium, Material, Method, Phase, Rod, RodPath, RodSection, Sampling, Scene,
-    Settings, Stability, Statics,
+    SectionNumbers, Settings, Stability, Statics,
 };
 
 fn material(young: f64, poisson: f64) -> Material {
@@ -252,13 +252,20 @@ fn what_is_no_rod_is_refused() {
         (rod(&[[0.0; 3]; 2], 3), ["point 2", "coincides"]),
         (rod(&[[0.0; 3], [f64::NAN, 0.0, 0.0]], 3), ["point 2", "finite"]),
         (rod(&straight, 0), ["elements of the rod = 0", "raise it"]),
+        (rod(&straight, 1 << 40), ["elements of the rod = 1099511627776", "take fewer"]),
         (rod(&[[0.0; 3], [0.3, 0.0, 0.0], [0.1, 0.02, 0.0]], 4), ["angle", "kink"]),
         (rod(&straight, 3).normal([1.0, 0.0, 0.0]), ["normal", "along the path"]),
         (coil(0.02, 20, 0.001), ["elements of the rod = 20", "it needs 32"]),
         (coil(0.02, 40, 0.03), ["radius of curvature of the rod's path = 2.0", "thinner"]),
         (coil(0.0, 40, 0.001), ["angle of the rod's path", "beside it"]),
         (ring(40).twist(1.0), ["twist of the rod = 1", "whole turns"]),
-        (ring(40).natural([[0.0; 2], [0.3, 0.0]]), ["natural path = 2", "have 3"]),
+        (ring(40).natural([[0.0; 2], [0.3, 0.0]]), ["path (`natural`) = 2", "have 3"]),
+        (ring(40).natural(straight[..1].to_vec()), ["path (`natural`) = 1", "two points"]),
+        (
+            rod(&straight, 3).natural(RodPath::arc([0.009, 0.0, 0.0], [0.0; 3], 3.0)),
+            ["path (`natural`) = 9.000e-3 m", "thinner"],
+        ),
+        (rod(&straight, 3).twist(6.1), ["twist of the rod = 6.1", "4 elements"]),
         (Rod::new(straight, 3, circle(0.0)), ["radius = 0", "above 0"]),
         (Rod::new(straight, 3, RodSection::Ring { radius: 0.01, inner: 0.01 }), ["inner", "below"]),
         (rod(&straight, 3).end(RodSection::Ellipse { radii: [0.01; 2] }), ["end", "same kind"]),
@@ -277,6 +284,30 @@ fn what_is_no_rod_is_refused() {
         let told = scene.warnings().iter().any(|told| told.contains("turns by 45 degrees along"));
         assert_eq!(told, is_told, "{:?}", scene.warnings());
     }
+    // also one whose second moments are in mm^4
+    let wire = SectionNumbers {
+        area: 1e-4,
+        shear: [1e-4; 2],
+        bending: [800.0; 2],
+        torsion: 1600.0,
+        reach: [0.005; 2],
+    };
+    for (length, section, is_told) in [
+        (0.07, circle(0.01), false),
+        (0.05, circle(0.01), true),
+        (0.3, RodSection::Rectangle { size: [0.002, 0.12] }, true),
+        (0.3, RodSection::Numbers(wire), true),
+    ] {
+        let short = Rod::new([[0.0; 3], [length, 0.0, 0.0]], 4, section);
+        let scene = Scene::new(Body::rod(short, of).unwrap().build().unwrap());
+        let told = scene.indicators().into_iter().find(|told| told.name == "rod-slenderness");
+        assert_eq!(told.unwrap().is_doubtful(), is_told, "{length} {section:?}");
+    }
+    // in the plane the width is that in the plane
+    let flat = RodSection::Rectangle { size: [0.01, 1.0] };
+    let flat = Body::rod(Rod::new([[0.0; 2], [0.3, 0.0]], 4, flat), of).unwrap().build().unwrap();
+    let warnings = Scene::new(flat).warnings();
+    assert!(!warnings.iter().any(|told| told.contains("long and")), "{warnings:?}");
     let body =
         |of: pliant::Substance| Body::rod(rod(&straight, 3), of).unwrap().named("arm").build();
     let message = body(of.law(pliant::Law::NeoHookean)).unwrap_err().to_string();

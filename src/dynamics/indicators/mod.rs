@@ -12,7 +12,8 @@
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
 //! | [`mesh`]: separate pieces | one piece |
 //! | [`arched`]: cells of curved walls of one layer, relative to sqrt(R t) | 1 |
-//! | [`kinked`]: reach of a rod's section over the radius of curvature in an element | 1 |
+//! | [`rods`]: reach of a rod's section over the radius of curvature in an element | 1 |
+//! | [`rods`]: length of a rod over its width | at least 3 |
 //! | [`faceted`]: error of the facets of a mesh from a file that approximate curves | 2 % |
 //! | [`conformity`]: hanging nodes, and separate nodes in the same position | none |
 //! | [`overlap`]: depth of overlaps of the body with itself, at the start and in motion | a twentieth of a cell |
@@ -74,7 +75,6 @@ mod faceted;
 mod felt;
 mod flat_face;
 mod gas;
-mod kinked;
 mod mesh;
 pub(crate) mod overlap;
 mod pace;
@@ -83,6 +83,7 @@ mod points;
 mod pressed;
 mod reduced;
 mod rigid;
+mod rods;
 mod shape;
 mod size;
 mod skin;
@@ -136,7 +137,8 @@ impl Scene {
             let facets = faceted::faceted(part.body).into_iter().collect();
             let measured = measured.chain(units::as_meant(self, facets));
             let measured = measured.chain(arched::arched(part.body));
-            let measured = measured.chain(kinked::kinked(part.body));
+            let measured = measured.chain(rods::kinked(part.body));
+            let measured = measured.chain(rods::stubby(part.body));
             named(part.name, body, measured.chain(conformity::conformity(part.body)))
         };
         let each = body.parts().flat_map(of_body);

@@ -95,6 +95,11 @@ impl Body {
         self.continua[0].rod.as_ref().and_then(|rod| rod.sharpest_bend())
     }
 
+    /// The [length and width](RodElements::extent) of a single body that is a rod.
+    pub(crate) fn rod_extent(&self) -> Option<[f64; 2]> {
+        self.continua[0].rod.as_ref().map(|rod| rod.extent())
+    }
+
     /// The surface of a single body that is a rod.
     #[cfg(feature = "output")]
     pub(crate) fn tube(&self) -> Option<Tube> {

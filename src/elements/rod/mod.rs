@@ -28,14 +28,14 @@ pub(crate) use growth::RodGrowth;
 use nodes::Nodes;
 pub use path::RodPath;
 pub use section::{RodSection, SectionNumbers};
-pub(crate) use solid_axis::SolidAxis;
+pub(crate) use solid_axis::{SLENDER, SolidAxis};
 use strain::{Deformed, Section};
 pub(crate) use tube::{Bend, RodPoint, Spokes, Tube, TubePiece};
 pub(crate) use turning::{CrossSection, SectionLoad};
 
 use super::material::{Material, MaxwellBranch};
 use super::mesh::{CellKind, Mesh};
-use crate::base::input::InputError;
+use crate::base::input::{InputError, check_memory};
 
 /// A rod: its path, the number of its elements, its cross section.
 ///
@@ -132,25 +132,16 @@ impl Rod {
     /// The nodes, those of the path along which it is free of stress if that is another one, and the section at each node.
     fn laid_out(&self) -> Result<(Nodes, Option<Nodes>, Vec<RodSection>), InputError> {
         self.section.validate("section.")?;
+        let bytes = self.elements as f64 * size_of::<RodElement>() as f64;
+        check_memory("elements of the rod", self.elements.to_string(), bytes, "take fewer")?;
         let nodes = self.path.nodes(self.elements, self.normal)?;
         let nodes = nodes.twisted(self.twist, self.dimension())?;
-        let reach = self.section.numbers(0.0).reach;
-        if nodes.curvature * reach[0].max(reach[1]) >= 1.0 {
-            let help = "the section would reach beyond the axis about which the path turns: make it thinner, or the path wider";
-            let radius = format!("{:.3e} m", nodes.curvature.recip());
-            return Err(InputError::new("radius of curvature of the rod's path", radius, help));
-        }
-        let natural = match &self.natural {
-            None => None,
-            Some(path) if path.dimension() == self.dimension() => {
-                Some(path.nodes(self.elements, self.normal)?)
-            }
-            Some(path) => {
-                let help = format!("those of its path have {}: give as many", self.dimension());
-                let input = "coordinates of the rod's natural path";
-                return Err(InputError::new(input, path.dimension(), help));
-            }
-        };
+        self.check_curvature(&nodes)?;
+        let natural = self.natural.as_ref().map(|path| self.natural_nodes(path)).transpose();
+        let natural = natural.map_err(|error| {
+            let input = format!("{} (`natural`)", error.input);
+            InputError { input, ..error }
+        })?;
         let Some(end) = self.end else {
             let all = vec![self.section; nodes.x.len()];
             return Ok((nodes, natural, all));
@@ -159,6 +150,30 @@ impl Rod {
         let (along, length) = nodes.distances();
         let sections = along.iter().map(|s| self.section.towards(&end, s / length));
         Ok((nodes, natural, sections.collect::<Result<_, _>>()?))
+    }
+
+    /// The nodes of the path along which it is free of stress.
+    fn natural_nodes(&self, path: &RodPath) -> Result<Nodes, InputError> {
+        if path.dimension() != self.dimension() {
+            let help = format!("those of its path have {}: give as many", self.dimension());
+            let input = "coordinates of the rod's path";
+            return Err(InputError::new(input, path.dimension(), help));
+        }
+        let nodes = path.nodes(self.elements, self.normal)?;
+        self.check_curvature(&nodes)?;
+        Ok(nodes)
+    }
+
+    /// # Errors
+    /// A smooth path that turns by more than the section allows.
+    fn check_curvature(&self, nodes: &Nodes) -> Result<(), InputError> {
+        let reach = self.section.numbers(0.0).reach;
+        if nodes.curvature * reach[0].max(reach[1]) < 1.0 {
+            return Ok(());
+        }
+        let help = "the section would reach beyond the axis about which the path turns: make it thinner, or the path wider";
+        let radius = format!("{:.3e} m", nodes.curvature.recip());
+        Err(InputError::new("radius of curvature of the rod's path", radius, help))
     }
 
     /// Its elements of a material, with Maxwell branches.

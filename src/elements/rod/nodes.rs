@@ -5,6 +5,9 @@ use nalgebra::{Rotation3, Unit, Vector3};
 use super::strain::Section;
 use crate::base::input::{InputError, finite};
 
+/// Most that a section turns against the one before it (rad), by the path or by a twist: beyond it the turn between them is another one.
+pub(super) const MOST_TURN: f64 = 2.0;
+
 /// The nodes of a rod.
 pub(super) struct Nodes {
     /// Positions (m).
@@ -40,7 +43,7 @@ impl Nodes {
     /// The same with directors that turn about the path, by the angle `twist` (rad) in all.
     ///
     /// # Errors
-    /// A ring, in which directors meet again, with a twist other than whole turns; a twist in the plane.
+    /// A ring, in which directors meet again, with a twist other than whole turns; a twist in the plane; one that elements do not follow.
     pub(super) fn twisted(mut self, twist: f64, dimension: usize) -> Result<Self, InputError> {
         finite("twist of the rod", &[twist])?;
         let turns = twist / std::f64::consts::TAU;
@@ -55,6 +58,15 @@ impl Nodes {
             return Err(InputError::new("twist of the rod", twist, help));
         }
         let (along, length) = self.distances();
+        let longest = self.lengths.iter().copied().fold(0.0, f64::max);
+        let most = twist.abs() * longest / length; // of an element
+        if most > MOST_TURN {
+            let fewest = (self.lengths.len() as f64 * most / MOST_TURN).ceil();
+            let help = format!(
+                "each element follows {MOST_TURN} rad of it at most: twist less, or give {fewest} elements"
+            );
+            return Err(InputError::new("twist of the rod", twist, help));
+        }
         for (d, s) in self.d.iter_mut().zip(along) {
             let tangent = Unit::new_normalize(d[0].cross(&d[1]));
             let turn = Rotation3::from_axis_angle(&tangent, twist * s / length);

@@ -124,7 +124,7 @@ fn polygon(
     }
     if elements < sides.len() {
         let help = format!(
-            "the path has {} sides, each of which needs one: raise it, or give fewer points",
+            "each side of the path needs one, {} in all: raise it, or give fewer points",
             sides.len()
         );
         return Err(InputError::new("elements of the rod", elements, help));

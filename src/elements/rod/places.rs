@@ -13,22 +13,32 @@ const STEPS: usize = 20;
 /// Parts of an element, and of the reach of its section, by which a place may be beyond these.
 const ROUND_OFF: f64 = 1e-9;
 
+/// Nodes with their shares, other than 0, in a point at the part `t` of the way between two cross sections. Each has its nodes and how far the point is along
+/// its directors, in arms.
+pub(super) fn shares_between(
+    sections: [([usize; 3], [f64; 2]); 2],
+    t: f64,
+    dimension: usize,
+) -> Vec<(usize, f64)> {
+    let mut shares = Vec::with_capacity(2 * dimension);
+    for ((nodes, arms), weight) in sections.into_iter().zip([1.0 - t, t]) {
+        let directors = &arms[..dimension - 1];
+        shares.push((nodes[0], weight * (1.0 - directors.iter().sum::<f64>())));
+        let own = nodes[1..].iter().zip(directors);
+        shares.extend(own.map(|(node, share)| (*node, weight * share)));
+    }
+    shares.retain(|(_, share)| *share != 0.0);
+    shares
+}
+
 impl RodElements {
     /// Nodes with their shares in the point that is undeformed at `x` (m), if it is in a cross section.
     pub(crate) fn shares_at(&self, x: &[f64]) -> Option<Vec<(usize, f64)>> {
         let x = Vector3::from(padded(x));
         self.elements.iter().find_map(|element| {
             let [t, a, b] = self.coordinates(element, &x)?;
-            let mut shares = Vec::with_capacity(2 * self.dimension);
-            for (end, weight) in element.ends.iter().zip([1.0 - t, t]) {
-                let arms = [a / end.arms[0], b / end.arms[1]];
-                let directors = &arms[..self.dimension - 1];
-                shares.push((end.nodes[0], weight * (1.0 - directors.iter().sum::<f64>())));
-                let own = end.nodes[1..].iter().zip(directors);
-                shares.extend(own.map(|(node, share)| (*node, weight * share)));
-            }
-            shares.retain(|(_, share)| *share != 0.0);
-            Some(shares)
+            let ends = element.ends.map(|end| (end.nodes, [a / end.arms[0], b / end.arms[1]]));
+            Some(shares_between(ends, t, self.dimension))
         })
     }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
-use super::nodes::{Nodes, across};
+use super::nodes::{MOST_TURN, Nodes, across};
 use crate::base::input::{InputError, finite};
 
 /// The curve of a point that turns about an axis and moves along it in proportion.
@@ -17,9 +17,6 @@ pub(super) struct Screw {
     /// Angle by which it turns (rad), right-handed.
     pub(super) angle: f64,
 }
-
-/// Most that an element turns (rad): beyond it the helix of least turn between its ends is another one.
-const MOST: f64 = 2.0;
 
 impl Screw {
     /// Nodes at equal distances; the directors are carried by the screw motion, so that strains are constant along the curve.
@@ -52,9 +49,10 @@ impl Screw {
             let help = "the path turns about its axis, and so it starts beside it and has an angle other than 0: give two points for a straight rod";
             return Err(InputError::new("angle of the rod's path", angle, help));
         }
-        if elements == 0 || angle.abs() > MOST * elements as f64 {
-            let fewest = (angle.abs() / MOST).ceil();
-            let help = format!("each follows {MOST} rad of the path at most: it needs {fewest}");
+        if elements == 0 || angle.abs() > MOST_TURN * elements as f64 {
+            let fewest = (angle.abs() / MOST_TURN).ceil();
+            let help =
+                format!("each follows {MOST_TURN} rad of the path at most: it needs {fewest}");
             return Err(InputError::new("elements of the rod", elements, help));
         }
         let rise = pitch / std::f64::consts::TAU; // per radian

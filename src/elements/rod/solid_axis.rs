@@ -4,13 +4,14 @@ use nalgebra::Vector3;
 
 use super::cut_section::{AreaMoments, CutSection};
 use super::nodes::across;
+use super::places::shares_between;
 use super::{Rod, RodSection, SectionNumbers};
 use crate::base::input::{InputError, four_digits, percent};
 use crate::base::vector::padded;
 use crate::elements::mesh::{Cut, Mesh};
 
 /// A solid is slender from this ratio of its length to its width on.
-const SLENDER: f64 = 3.0;
+pub(crate) const SLENDER: f64 = 3.0;
 /// Parts of the length at which it is cut.
 const CUTS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 /// By how much the numbers of the cuts may differ (relative): of lengths, and of areas.
@@ -161,20 +162,13 @@ impl SolidAxis {
         let [along, a, b] = self.local(x);
         let place = (along / self.length).clamp(0.0, 1.0) * self.elements as f64;
         let first = (place as usize).min(self.elements - 1);
-        let part = place - first as f64;
-        let arms: Vec<f64> = [a, b]
-            .iter()
-            .zip(self.numbers.reach)
-            .take(self.dimension - 1)
-            .map(|(x, reach)| x / reach)
-            .collect();
-        let of_axis = 1.0 - arms.iter().sum::<f64>();
-        let mut shares = Vec::with_capacity(2 * self.dimension);
-        for (section, weight) in [(first, 1.0 - part), (first + 1, part)] {
-            let within = std::iter::once(of_axis).chain(arms.iter().copied());
-            shares.extend(self.nodes(section).into_iter().zip(within.map(|own| weight * own)));
-        }
-        shares
+        let arms = [a / self.numbers.reach[0], b / self.numbers.reach[1]];
+        let nodes = |section: usize| {
+            let own = self.nodes(section);
+            std::array::from_fn(|v| own.get(v).copied().unwrap_or(section))
+        };
+        let sections = [first, first + 1].map(|section| (nodes(section), arms));
+        shares_between(sections, place - first as f64, self.dimension)
     }
 }
 

@@ -94,6 +94,21 @@ impl RodElements {
         all.max_by(|a, b| sharp(a).total_cmp(&sharp(b)))
     }
 
+    /// Its length (m), and the largest width of a section (m): twice its reach, or twice its radius of gyration if that is more.
+    pub(crate) fn extent(&self) -> [f64; 2] {
+        let width = |element: &RodElement| {
+            let [area, moments @ ..] = element.mass;
+            let is_plane = self.dimension == 2;
+            // in the plane it bends about d_2
+            let moments = if is_plane { &moments[1..] } else { &moments[..] };
+            let gyration = moments.iter().map(|moment| (moment / area).sqrt());
+            let reaches = element.ends.iter().flat_map(|end| &end.arms[..self.dimension - 1]);
+            2.0 * reaches.copied().chain(gyration).fold(0.0, f64::max)
+        };
+        let length = self.elements.iter().map(|element| element.length).sum();
+        [length, self.elements.iter().map(width).fold(0.0, f64::max)]
+    }
+
     /// The mass of element `number` (kg).
     pub(crate) fn mass(&self, number: usize) -> f64 {
         self.elements[number].mass[0] * self.elements[number].length

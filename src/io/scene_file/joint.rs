@@ -182,8 +182,22 @@ pub(super) fn add_joint(scene: Scene, value: &Value) -> Result<Scene, Error> {
     joint = joint.servo(stiffness.unwrap_or_default(), damping.unwrap_or_default());
     joint = table.added(joint, "motor_limit", Value::number, Joint::limit)?;
     joint = table.added(joint, "no_load_speed", Value::number, Joint::no_load_speed)?;
+    for (key, other) in [
+        ("rest", "stiffness"),
+        ("stop_stiffness", "stops"),
+        ("sticking_speed", "friction"),
+        ("bearing_damping", "bearing_stiffness"),
+    ] {
+        if let (Some(value), None) = (table.get(key), table.get(other)) {
+            return Err(
+                value.error(format!("it does nothing without {other}: give that, or leave it out"))
+            );
+        }
+    }
     joint.check(scene.body()).map_err(|error| table.blame(error))?;
-    Ok(scene.joint(joint))
+    let scene = scene.joint(joint);
+    scene.check_devices_undriven().map_err(|error| table.blame(error))?;
+    Ok(scene)
 }
 
 /// The phase with the motor of a joint.

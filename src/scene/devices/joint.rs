@@ -367,7 +367,12 @@ impl Device for Joint {
     }
 
     fn check_start(&self, site: &DeviceSite<'_>, now: &DeviceState<'_>) -> Result<(), InputError> {
-        Assembly::new(&self.geometry, site.body)?.check_together(&self.geometry, now.u)
+        let assembly = Assembly::new(&self.geometry, site.body)?;
+        assembly.check_together(&self.geometry, now.u)?;
+        let Some(coordinate) = assembly.coordinate else { return Ok(()) };
+        let q = coordinate.at(now.u, now.v, false).value;
+        let wrapped = |difference| coordinate.wrapped(difference);
+        self.law.check_start(&self.geometry.name, q, wrapped)
     }
 
     fn gauge(&self, number: usize, site: &DeviceSite<'_>) -> Result<DeviceGauge, InputError> {

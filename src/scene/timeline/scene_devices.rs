@@ -9,7 +9,7 @@ use super::device::{
 use super::device_rows::DeviceInput;
 use super::input::{Input, InputSignal, Quantity, Target};
 use super::{Phase, Scene, taken};
-use crate::base::input::{InputError, find};
+use crate::base::input::{InputError, find, find_in};
 use crate::elements::force::Forces;
 use crate::scene::constraint::{Constrained, Constraint, ConstraintRow, Motion, held_pieces};
 
@@ -38,7 +38,8 @@ impl Scene {
     pub(crate) fn output_number(&self, device: usize, word: &str) -> Result<usize, InputError> {
         let device = &self.devices[device];
         let words = device.outputs().iter().map(|output| output.word);
-        find(word, words, &format!("output of device \"{}\"", device.name()), "outputs")
+        let input = format!("output of device \"{}\"", device.name());
+        find_in(device.kind(), word, words, &input, "outputs")
     }
 
     /// The name of one more device of a kind, where it is given none.
@@ -146,6 +147,12 @@ impl Scene {
         })
     }
 
+    /// The same where no phase drives them.
+    pub(crate) fn check_devices_undriven(&self) -> Result<(), InputError> {
+        let (u, v) = (self.initial_displacements(), self.initial_velocities()?);
+        self.check_devices_at_start(&Phase::until(1.0), [u, &v])
+    }
+
     /// The functions that read the outputs of each device.
     pub(crate) fn device_gauges(&self) -> Result<Vec<Vec<DeviceGauge>>, InputError> {
         let site = self.device_site();
@@ -181,9 +188,11 @@ impl Scene {
         device: &str,
         word: &str,
     ) -> Result<&'static DeviceInput, InputError> {
-        let inputs = self.devices[self.device_number(device, "input of device")?].inputs();
+        let owner = &self.devices[self.device_number(device, "input of device")?];
+        let (kind, inputs) = (owner.kind(), owner.inputs());
         let words = inputs.iter().map(|input| input.word);
-        Ok(&inputs[find(word, words, &format!("input of device \"{device}\""), "inputs")?])
+        let input = format!("input of device \"{device}\"");
+        Ok(&inputs[find_in(kind, word, words, &input, "inputs")?])
     }
 
     /// Whether the signal fits the input.

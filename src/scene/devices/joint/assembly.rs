@@ -125,24 +125,30 @@ impl Assembly {
         coordinate: Option<&Coordinate>,
         body: &Body,
     ) -> Result<Coupling, InputError> {
-        let input = geometry.input("gear");
-        let refused = |value: String, help: &str| Err(InputError::new(&*input, value, help));
+        let input = |word: &str| format!("{}: {word} of its gear", geometry.label());
+        let refused =
+            |word: &str, value: String, help: &str| Err(InputError::new(input(word), value, help));
         let first =
             Assembly::new(&gear.first, body)?.coordinate.filter(|_| gear.first.kind.turns());
         let (Some(first), Some(own)) = (first, coordinate) else {
             let value = format!("of {} and {}", gear.first.label(), geometry.label());
-            return refused(value, "it couples a revolute joint with one that turns or slides");
+            return refused(
+                "joint",
+                value,
+                "it couples a revolute joint with one that turns or slides",
+            );
         };
         let [stiffness, damping] = gear.bearing;
-        positive(&format!("stiffness in {input}"), stiffness, "")?;
-        not_negative(&format!("damping in {input}"), damping, "")?;
+        positive(&input("stiffness"), stiffness, "")?;
+        not_negative(&input("damping"), damping, "")?;
         let (share, period) = match gear.ratio {
             Ratio::Teeth([a, b]) if a != 0 && b != 0 && geometry.kind.turns() => {
                 (f64::from(a) / f64::from(b), TAU / f64::from(b).abs())
             }
             Ratio::Teeth(teeth) => {
                 return refused(
-                    format!("{teeth:?} teeth"),
+                    "teeth",
+                    format!("{teeth:?}"),
                     "both wheels need teeth, and both joints an angle: a slider has a lead",
                 );
             }
@@ -151,7 +157,8 @@ impl Assembly {
             }
             Ratio::Lead(lead) => {
                 return refused(
-                    format!("lead of {lead} m"),
+                    "lead",
+                    format!("{lead} m"),
                     "a slider needs the displacement for a turn, not 0: two angles are coupled by teeth",
                 );
             }

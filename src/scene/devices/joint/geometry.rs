@@ -108,7 +108,7 @@ impl Geometry {
             ("bearing_stiffness", self.bearing.is_some(), holds),
         ] {
             if is_given && !has {
-                let help = "this joint has none, its rows are exact: leave it out";
+                let help = format!("{:?} joints have none here: leave it out", self.kind);
                 return Err(InputError::new(self.input(word), "given", help));
             }
         }

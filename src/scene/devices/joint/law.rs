@@ -11,7 +11,7 @@
 //! Q, q_t and q'_t are inputs. Differences of angles are those without whole turns, so that no force has to count them: a spring and a servo turn
 //! over half a turn away. Friction creeps below the speed w (Coulomb's law, regularized).
 
-use crate::base::input::{InputError, finite, not_negative, positive};
+use crate::base::input::{InputError, finite, four_digits, not_negative, positive};
 
 /// The numbers of the law; 0 of what is not there.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -37,6 +37,11 @@ pub(super) struct Part {
     pub(super) force: f64,
     pub(super) slopes: [f64; 2],
 }
+
+/// Part of the way between the stops by which a state may lean on one at the start.
+const LEANING: f64 = 0.05;
+/// Coordinate (rad, m) below which a joint is in the undeformed shape.
+const UNDEFORMED: f64 = 1e-9;
 
 impl JointLaw {
     /// Whether the state of the joint has a part in its forces.
@@ -111,6 +116,30 @@ impl JointLaw {
         let help =
             format!("no servo leads to it: give servo_{gain}, or command the torque or force");
         Err(InputError::new(format!("{word} of joint \"{name}\""), "commanded", help))
+    }
+
+    /// # Errors
+    /// A start `q` beyond a stop; one that is not in the undeformed shape may lean on it, by a twentieth of the way between the stops.
+    pub(super) fn check_start(
+        &self,
+        name: &str,
+        q: f64,
+        wrapped: impl Fn(f64) -> f64,
+    ) -> Result<(), InputError> {
+        let Some(([low, high], _)) = self.stops else { return Ok(()) };
+        let [_, behind] = self.strains(q, wrapped);
+        let allowed = if q.abs() < UNDEFORMED { 0.0 } else { LEANING * (high - low) };
+        if behind.abs() <= allowed {
+            return Ok(());
+        }
+        let help = format!(
+            "the joint starts at {}, {} beyond a stop, which would throw it back: its coordinate is 0 in the undeformed shape; draw it between the stops, \
+             or move these",
+            four_digits(q),
+            four_digits(behind.abs()),
+        );
+        let input = format!("stops of joint \"{name}\"");
+        Err(InputError::new(input, format!("[{low}, {high}]"), help))
     }
 
     /// How far `q` is from the rest, and behind a stop; both without whole turns by `wrapped`.
