@@ -142,6 +142,10 @@ pub(crate) fn thickness(body: &Body) -> Option<f64> {
 /// Each stands for the area of the faces around it that is seen along the normals of these, in the mean, so that a block which lies on one side
 /// presses at the edges of that side with its area alone. The second number is the whole of their areas (m^2).
 pub(super) fn closed_points(body: &Body, faces: &[Vec<usize>]) -> Option<Vec<(SurfacePoint, f64)>> {
+    /// By the nodes and the bits of their shares.
+    type Place = Vec<(usize, u64)>;
+    /// Of faces: the area (m^2) of the part for which a point stands, and the unit normal there.
+    type Sides = Vec<(f64, [f64; 3])>;
     let rule = |corners: usize| -> Rule {
         match corners {
             1 => &[(&[1.0], 1.0)],
@@ -149,17 +153,16 @@ pub(super) fn closed_points(body: &Body, faces: &[Vec<usize>]) -> Option<Vec<(Su
             _ => &CLOSED_TRIANGLE,
         }
     };
-    // by the nodes and the bits of their shares
-    let mut around: BTreeMap<Vec<(usize, u64)>, Vec<(f64, [f64; 3])>> = BTreeMap::new();
+    let mut around: BTreeMap<Place, Sides> = BTreeMap::new();
     for face in faces {
         for FaceShare { at, area, normal } in measured_points(body, face, rule)? {
-            let mut place: Vec<(usize, u64)> =
+            let mut place: Place =
                 at.into_iter().map(|(node, share)| (node, share.to_bits())).collect();
             place.sort_unstable();
             around.entry(place).or_default().push((area, normal));
         }
     }
-    let point = |(place, faces): (Vec<(usize, u64)>, Vec<(f64, [f64; 3])>)| {
+    let point = |(place, faces): (Place, Sides)| {
         let whole: f64 = faces.iter().map(|(area, _)| area).sum();
         let seen = |normal: &[f64; 3]| -> f64 {
             faces.iter().map(|(area, other)| area * dot(normal, other).abs()).sum()
