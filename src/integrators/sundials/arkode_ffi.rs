@@ -391,4 +391,6 @@ unsafe extern "C" {
     pub fn SuiteSparse_version(version: *mut c_int) -> c_int;
     #[cfg(not(feature = "vendored"))]
     pub fn SUNLinSol_KLU(y: N_Vector, A: SUNMatrix, sunctx: SUNContext) -> SUNLinearSolver;
+    #[cfg(not(feature = "vendored"))]
+    pub fn SUNLinSol_KLUSetOrdering(S: SUNLinearSolver, ordering_choice: c_int) -> c_int;
 }

@@ -1,5 +1,5 @@
 //! KLU as a linear solver of SUNDIALS, for a build without SUNDIALS' own interface to it: the same calls in the same order
-//! (`sunlinsol_klu.c`), and so the same digits.
+//! (`sunlinsol_klu.c`), and so the same digits; but columns are ordered by AMD.
 
 use std::ptr;
 
@@ -13,9 +13,6 @@ use super::{
     ffi,
     serial::{slice, slice_mut},
 };
-
-/// Columns are ordered by COLAMD, as SUNDIALS does.
-const COLAMD: i64 = 1;
 
 struct Klu {
     common: KluLCommon,
@@ -52,7 +49,6 @@ pub(super) unsafe fn SUNLinSol_KLU(
         ops.free = Some(free);
         let mut common: KluLCommon = std::mem::zeroed();
         klu_l_defaults(&raw mut common);
-        common.ordering = COLAMD;
         let klu =
             Klu { common, symbolic: ptr::null_mut(), numeric: ptr::null_mut(), is_first: true };
         (*solver).content = Box::into_raw(Box::new(klu)).cast();

@@ -2,8 +2,6 @@
 
 use std::{ffi::c_void, ptr};
 
-#[cfg(not(feature = "vendored"))]
-use super::ffi::SUNLinSol_KLU;
 #[cfg(feature = "vendored")]
 use super::klu::SUNLinSol_KLU;
 use super::{
@@ -33,6 +31,27 @@ pub(super) struct Linear {
 
 struct RawSolver(ffi::SUNLinearSolver);
 
+/// KLU, with columns ordered by AMD on the pattern of A + A^T, KLU's own default. SUNDIALS' is COLAMD, which leaves twice the fill in matrices of
+/// symmetric pattern.
+///
+/// # Safety
+/// Vector, matrix and context are alive and fit together.
+unsafe fn klu(y: ffi::N_Vector, m: ffi::SUNMatrix, c: ffi::SUNContext) -> ffi::SUNLinearSolver {
+    #[cfg(feature = "vendored")]
+    // SAFETY: the caller vouches for the arguments.
+    return unsafe { SUNLinSol_KLU(y, m, c) };
+    #[cfg(not(feature = "vendored"))]
+    // SAFETY: as above; the new solver is one of KLU.
+    unsafe {
+        const AMD: i32 = 0;
+        let solver = ffi::SUNLinSol_KLU(y, m, c);
+        if !solver.is_null() {
+            ffi::SUNLinSol_KLUSetOrdering(solver, AMD);
+        }
+        solver
+    }
+}
+
 impl Linear {
     /// # Safety
     /// `data` is the [`Host<S>`] of the integrator, which outlives the result.
@@ -57,7 +76,7 @@ impl Linear {
                 ("SUNLinSol_Band", unsafe { ffi::SUNLinSol_Band(y, m, c) })
             }
             // SAFETY: as above.
-            LinearSolver::Klu { .. } => ("SUNLinSol_KLU", unsafe { SUNLinSol_KLU(y, m, c) }),
+            LinearSolver::Klu { .. } => ("SUNLinSol_KLU", unsafe { klu(y, m, c) }),
             // SAFETY: vector and context are alive; the numbers were checked.
             LinearSolver::Krylov(options) => unsafe { krylov(options, y, c) },
             // SAFETY: the context is alive; the caller vouches for `data`.
