@@ -118,9 +118,10 @@ pub(super) mod tests {
             let x = d + (f64::from(k) + 0.5) / f64::from(parts) * depth;
             energy += hard * (DISTANCE - x).powi(2) * (DISTANCE + 2.0 * x) / (3.0 * x * x);
         }
-        // the end nodes stand for a twelfth of a face, also of the sides of the upper body and of the faces beyond it, whose
-        // other half is that of the other body
-        let length = 0.02 + 0.5 * (2.0 * 0.02 + 2.0 * 0.004) / 12.0;
+        // the end nodes stand for a twelfth of a face, also of the faces beyond the upper body, whose other half is that of the other body. Its
+        // corners stand for the mean of the faces below and beside them, by their lengths
+        let corner = (0.004_f64.powi(2) + 0.02_f64.powi(2)) / (0.004 + 0.02);
+        let length = 0.02 + 0.5 * (2.0 * (corner - 0.004) + 2.0 * 0.004) / 12.0;
         energy *= depth / f64::from(parts) * length * 0.01;
         let (mass, end) = (1000.0 * 0.02 * 0.02 * 0.01, 1.0);
         let lying = mass * (9.8 + DISTANCE / end / end) * DISTANCE;
