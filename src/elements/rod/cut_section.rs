@@ -13,14 +13,18 @@
 
 use std::collections::HashMap;
 
+use faer::linalg::solvers::Solve;
+use faer::sparse::{SparseColMat, Triplet};
+use faer::{ColRef, Side};
+
 use super::SectionNumbers;
-use crate::base::vector::{dot, largest};
+use crate::base::vector::dot;
 use crate::elements::mesh::Cut;
 
 /// Triangles are divided, once at least, until there are so many.
 const ENOUGH: usize = 1500;
-/// A residual below this part of the first one is as good as none.
-const CONVERGED: f64 = 1e-10;
+/// What is added to the diagonal of K, over its largest entry: far below its eigenvalues but 0.
+const SHIFT: f64 = 1e-12;
 
 /// Triangles of a cross section.
 #[derive(Debug, Clone)]
@@ -149,7 +153,8 @@ impl CutSection {
     /// Both problems on these triangles, about principal axes with the second moments `second` = int x^2, int y^2.
     fn solved(&self, second: [f64; 2]) -> Solution {
         let count = self.points.len();
-        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
+        let mut entries = Vec::with_capacity(9 * self.triangles.len());
+        let mut stiffest = 0.0_f64;
         let mut twist = vec![0.0; count];
         let mut linear = [vec![0.0; count], vec![0.0; count]];
         for triangle in &self.triangles {
@@ -163,10 +168,8 @@ impl CutSection {
             for (i, &row) in triangle.iter().enumerate() {
                 for (j, &column) in triangle.iter().enumerate() {
                     let entry = 0.5 * double * dot(&gradient[i], &gradient[j]);
-                    match rows[row].iter_mut().find(|(known, _)| *known == column) {
-                        Some((_, sum)) => *sum += entry,
-                        None => rows[row].push((column, entry)),
-                    }
+                    entries.push(Triplet::new(row, column, entry));
+                    stiffest = stiffest.max(entry);
                 }
                 let turning = gradient[i][1] * sum[0] - gradient[i][0] * sum[1];
                 twist[row] += 0.5 * double * turning / 3.0;
@@ -175,12 +178,19 @@ impl CutSection {
                 }
             }
         }
-        let warping = conjugate_gradients(&rows, &twist);
+        // a constant in each connected part is free, and drops out of all results
+        entries.extend((0..count).map(|k| Triplet::new(k, k, SHIFT * stiffest)));
+        let factor = SparseColMat::try_new_from_triplets(count, count, &entries)
+            .ok()
+            .and_then(|matrix| matrix.sp_cholesky(Side::Lower).ok());
+        let Some(factor) = factor else { return [f64::NAN; 5] };
+        let solve = |b: &[f64]| -> Vec<f64> {
+            factor.solve(ColRef::from_slice(b)).iter().copied().collect()
+        };
+        let warping = solve(&twist);
         let torsion = second[0] + second[1] - dot(&warping, &twist);
-        let shear = [0, 1].map(|axis| {
-            let stress = conjugate_gradients(&rows, &linear[axis]);
-            second[axis].powi(2) / dot(&stress, &linear[axis])
-        });
+        let shear =
+            [0, 1].map(|axis| second[axis].powi(2) / dot(&solve(&linear[axis]), &linear[axis]));
         // Trefftz's centre, by the work of a force there in torsion
         let centre =
             [dot(&warping, &linear[1]) / second[1], -dot(&warping, &linear[0]) / second[0]];
@@ -193,42 +203,12 @@ fn twice_area(corners: &[[f64; 2]; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
 }
 
-/// The solution x of A x = b, of a matrix by rows that is positive but for a constant in each connected part; the sum of b is 0 there.
-fn conjugate_gradients(rows: &[Vec<(usize, f64)>], b: &[f64]) -> Vec<f64> {
-    let diagonal = |row: usize| {
-        let own = rows[row].iter().find(|(column, _)| *column == row);
-        own.map_or(1.0, |(_, entry)| *entry)
-    };
-    let inverse: Vec<f64> = (0..rows.len()).map(|row| diagonal(row).recip()).collect();
-    let scaled = |r: &[f64]| -> Vec<f64> { r.iter().zip(&inverse).map(|(r, d)| r * d).collect() };
-    let (mut x, mut residual) = (vec![0.0; b.len()], b.to_vec());
-    let mut direction = scaled(&residual);
-    let mut size = dot(&residual, &direction);
-    let limit = CONVERGED * largest(b);
-    for _ in 0..4 * rows.len() {
-        if largest(&residual) <= limit {
-            break;
-        }
-        let product: Vec<f64> = rows
-            .iter()
-            .map(|row| row.iter().map(|(column, entry)| entry * direction[*column]).sum())
-            .collect();
-        let step = size / dot(&direction, &product);
-        x.iter_mut().zip(&direction).for_each(|(x, d)| *x += step * d);
-        residual.iter_mut().zip(&product).for_each(|(r, p)| *r -= step * p);
-        let next = scaled(&residual);
-        let before = size;
-        size = dot(&residual, &next);
-        direction.iter_mut().zip(&next).for_each(|(d, n)| *d = n + size / before * *d);
-    }
-    x
-}
-
 #[cfg(test)]
 mod tests {
     use std::f64::consts::PI;
 
     use super::*;
+    use crate::base::vector::largest;
     use crate::elements::mesh::{Mesh, SolidCells};
 
     /// The section across x of a block with these sides along y and z.
