@@ -71,7 +71,7 @@ fn creep_is_told() {
         assert!((told.value * way / creep - 1.0).abs() < 0.03, "{told}");
         assert_eq!(told.is_doubtful(), is_doubtful, "{told}");
         let warnings = motion.report().warnings().join(" ");
-        assert_eq!(warnings.contains("obstacle \"floor\" creeps by"), is_doubtful, "{warnings}");
+        assert_eq!(warnings.contains("obstacle \"floor\" creep by"), is_doubtful, "{warnings}");
     }
 }
 

@@ -186,7 +186,10 @@ fn growth_that_cannot_be() {
     refused(with(rigid, Growth::everywhere()), &["growth \"g\" cell = 2", "rigid"]);
     let relaxing = Body::new(mesh(), material(0.3, 1.0).maxwell(0.2, 0.1)).thickness(0.01);
     let relaxing = relaxing.plane(Plane::Stress);
-    refused(with(relaxing, Growth::everywhere()), &["growth \"g\" material.branch", "relaxes"]);
+    refused(
+        with(relaxing, Growth::everywhere()),
+        &["growth \"g\" material.branch", "do not support growth"],
+    );
     let twice = with(soft(), Growth::everywhere()).growth(Growth::everywhere().named("h"));
     refused(
         twice.phase(Phase::until(0.2).actuate(["g", "h"], 0.1)),

@@ -169,10 +169,10 @@ fn what_couples_nothing_is_refused() {
     let slider = || Joint::prismatic("second", ["world", "b"], [0.2, 0.0]).axis([1.0, 0.0]);
     let guide = || Joint::prismatic("second", ["a", "b"], [0.2, 0.0]).axis([1.0, 0.0]);
     for (joint, words) in [
-        (second().geared(&first, [0, 3], 1.0, 0.0), ["gear of joint", "teeth"]),
-        (slider().geared(&first, [1, 3], 1.0, 0.0), ["gear of joint", "slider has a lead"]),
-        (second().driven(&first, 0.1, 1.0, 0.0), ["gear of joint", "coupled by teeth"]),
-        (second().geared(&first, [1, 3], 0.0, 0.0), ["stiffness in gear", "above 0"]),
+        (second().geared(&first, [0, 3], 1.0, 0.0), ["teeth of its gear", "need teeth"]),
+        (slider().geared(&first, [1, 3], 1.0, 0.0), ["teeth of its gear", "slider has a lead"]),
+        (second().driven(&first, 0.1, 1.0, 0.0), ["lead of its gear", "coupled by teeth"]),
+        (second().geared(&first, [1, 3], 0.0, 0.0), ["stiffness of its gear", "above 0"]),
         (second().bearing(1.0, 0.0), ["bearing_stiffness of joint", "leave it out"]),
         (second().lead(1.0), ["lead of joint", "leave it out"]),
         (guide(), ["bearing_stiffness of joint", "give one"]),

@@ -53,6 +53,8 @@ pub(super) struct Point {
     pub(super) on: SurfacePoint,
     /// The areas (m^2) of the faces around it: more at an edge than it stands for.
     pub(super) around: f64,
+    /// Whether the surface around it is smooth.
+    is_flat: bool,
     pub(super) body: usize,
     /// Of the tube (m) on whose axis it lies; 0 on a surface.
     pub(super) radius: f64,
@@ -110,7 +112,15 @@ impl Surfaces {
                 |face: &&Vec<usize>| parts[number].contains(&face[0]) && !is_within(face, planes);
             let own: Vec<Vec<usize>> = faces.iter().filter(is_own).cloned().collect();
             let points = closed_points(body, &own).ok_or(STRING)?.into_iter();
-            surfaces.points.extend(points.map(|(on, around)| Point::new(on, around, number, 0.0)));
+            let is_rigid = surfaces.are_rigid[number];
+            surfaces.points.extend(points.map(|(mut on, around)| {
+                let is_flat = around < SHARP * on.area;
+                // nothing yields to the pressure at the edges of a rigid body, which are as stiff as they can be
+                if is_rigid {
+                    on.area = around;
+                }
+                Point { is_flat, ..Point::new(on, around, number, 0.0) }
+            }));
             for face in &own {
                 let kind = body.mesh().face_kind(face);
                 surfaces.reach = surfaces.reach.max(reach(kind));
@@ -235,7 +245,7 @@ impl Surfaces {
         let bodies = self.bodies(point, feature);
         let [mut own, mut opposite] = bodies.map(|body| self.sizes[body]);
         match bodies.map(|body| self.are_rigid[body]) {
-            [true, false] if self.points[point].is_flat() => own *= RIGID,
+            [true, false] if self.points[point].is_flat => own *= RIGID,
             [false, true] => opposite *= RIGID,
             _ => {}
         }
@@ -399,12 +409,7 @@ impl Surfaces {
 
 impl Point {
     pub(super) fn new(on: SurfacePoint, around: f64, body: usize, radius: f64) -> Self {
-        Self { on, around, body, radius, unfelt: Vec::new() }
-    }
-
-    /// Whether the surface around it is smooth.
-    fn is_flat(&self) -> bool {
-        self.around < SHARP * self.on.area
+        Self { on, around, is_flat: true, body, radius, unfelt: Vec::new() }
     }
 }
 
