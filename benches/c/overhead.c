@@ -82,6 +82,8 @@ static void run(const problem_t *problem, long counters[COUNTERS]) {
     } else {
         matrix = SUNSparseMatrix(problem->n, problem->n, problem->entries, CSC_MAT, context);
         solver = SUNLinSol_KLU(y, matrix, context);
+        /* columns in the order of AMD, as pliant has them */
+        CHECK(SUNLinSol_KLUSetOrdering(solver, 0));
     }
     CHECK(CVodeSetLinearSolver(cvode, solver, matrix));
     CHECK(CVodeSetJacFn(cvode, problem->jacobian));
