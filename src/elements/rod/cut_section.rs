@@ -23,7 +23,7 @@ use crate::elements::mesh::Cut;
 
 /// Triangles are divided, once at least, until there are so many.
 const ENOUGH: usize = 1500;
-/// What is added to the diagonal of K, over its largest entry: far below its eigenvalues but 0.
+/// A shift of the diagonal of K, relative to its largest entry: far below its eigenvalues but 0.
 const SHIFT: f64 = 1e-12;
 
 /// Triangles of a cross section.

@@ -196,7 +196,7 @@ pub(super) fn add_joint(scene: Scene, value: &Value) -> Result<Scene, Error> {
     }
     joint.check(scene.body()).map_err(|error| table.blame(error))?;
     let scene = scene.joint(joint);
-    scene.check_devices_undriven().map_err(|error| table.blame(error))?;
+    scene.check_last_device_undriven().map_err(|error| table.blame(error))?;
     Ok(scene)
 }
 

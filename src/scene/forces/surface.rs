@@ -139,8 +139,8 @@ pub(crate) fn thickness(body: &Body) -> Option<f64> {
 /// them: Simpson's rule on both halves of segments, a rule of degree 3 on triangles. Points in the same place are one.
 /// A string has no area: `None`.
 ///
-/// Each stands for the area of the faces around it that is seen along the normals of these, in the mean, so that a block which lies on one side
-/// presses at the edges of that side with its area alone. The second number is the whole of their areas (m^2).
+/// Each stands for the areas of all faces around it. The second number is the part of them (m^2) that is seen along their normals, in the mean: a block
+/// that lies on one side presses at the edges of that side with about its area alone.
 pub(super) fn closed_points(body: &Body, faces: &[Vec<usize>]) -> Option<Vec<(SurfacePoint, f64)>> {
     /// By the nodes and the bits of their shares.
     type Place = Vec<(usize, u64)>;
@@ -171,7 +171,7 @@ pub(super) fn closed_points(body: &Body, faces: &[Vec<usize>]) -> Option<Vec<(Su
         let mean = faces.iter().map(|(area, normal)| area * seen(normal)).sum::<f64>()
             / whole.max(f64::MIN_POSITIVE);
         let at = place.into_iter().map(|(node, bits)| (node, f64::from_bits(bits))).collect();
-        (point_of(at, mean), whole)
+        (point_of(at, whole), mean)
     };
     Some(around.into_iter().map(point).collect())
 }

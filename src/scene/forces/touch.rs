@@ -19,7 +19,8 @@
 //!
 //! The points of each surface have half of the energy where meshes are alike, so that no decision on sides or facets is needed.
 //! Those of a coarse surface, which stand for more than lies over them and would press on single nodes, have less: where its
-//! facets are r > 2 times as large, 1/(1 + (r/2)^4).
+//! facets are r > 2 times as large, 1/(1 + (r/2)^4). Flat parts of a rigid surface count as 8 times as large opposite a body that yields, which then
+//! bears an even pressure evenly; points at edges of such a body bear on the mean of the areas seen along the normals of the faces around them.
 //! Facets are as curved as their shape functions make them (`elements/basis/nearest.rs`: Newton's method for
 //! the nearest place within the face, else that of its edges and corners), so that points and the places
 //! opposite them load nodes alike. Damping and friction act pair by pair, with exact derivatives. Distances

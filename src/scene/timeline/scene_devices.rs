@@ -147,10 +147,12 @@ impl Scene {
         })
     }
 
-    /// The same where no phase drives them.
-    pub(crate) fn check_devices_undriven(&self) -> Result<(), InputError> {
+    /// The same of the last one alone, where no phase drives it.
+    pub(crate) fn check_last_device_undriven(&self) -> Result<(), InputError> {
+        let Some(device) = self.devices.last() else { return Ok(()) };
         let (u, v) = (self.initial_displacements(), self.initial_velocities()?);
-        self.check_devices_at_start(&Phase::until(1.0), [u, &v])
+        let phase = Phase::until(1.0);
+        device.check_start(&self.device_site(), &self.device_state(&**device, &phase, 0.0, [u, &v]))
     }
 
     /// The functions that read the outputs of each device.

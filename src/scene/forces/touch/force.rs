@@ -76,7 +76,7 @@ impl TouchForce {
             let on = &self.surfaces.points[near.point];
             let radii = on.radius + feature.radius;
             if norm(&offset) < self.law.distance + radii {
-                let point = (offset, on.on.nodes(), on.around * near.weight);
+                let point = (offset, on.on.nodes(), on.on.area * near.weight);
                 let mut pair = Pair::new(point, (feature.nodes(), &at), (&place, &shape), radii);
                 self.add_levers(&mut pair, [on.radius, feature.radius], u);
                 see(&pair, self.share(near));
@@ -100,9 +100,9 @@ impl TouchForce {
         }
     }
 
-    /// The area that a point stands for, times the weight of the feature.
+    /// The area on which a point bears, times the weight of the feature.
     fn share(&self, near: &NearPair) -> f64 {
-        self.surfaces.points[near.point].on.area * near.weight
+        self.surfaces.points[near.point].bears * near.weight
     }
 
     /// Contact action in a pair at the nodal velocities `v` (m/s).

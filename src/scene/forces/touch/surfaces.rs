@@ -17,7 +17,7 @@ const ALIKE: f64 = 2.0;
 /// Size of the facets of a rigid body for that, over what they measure, opposite one that yields: as flat as it is between its edges, it needs
 /// no points there.
 const RIGID: f64 = 8.0;
-/// Ratio of the areas around a point to what it stands for from which it is at an edge of its surface: of two facets at an angle of 53 degrees.
+/// Ratio of the areas around a point to the part that is seen along their normals from which it is at an edge of its surface: of two facets at an angle of 53 degrees.
 const SHARP: f64 = 1.25;
 
 /// Refused bodies, and what to do.
@@ -51,8 +51,8 @@ pub(super) struct Surfaces {
 /// A quadrature point.
 pub(super) struct Point {
     pub(super) on: SurfacePoint,
-    /// The areas (m^2) of the faces around it: more at an edge than it stands for.
-    pub(super) around: f64,
+    /// The area (m^2) on which it bears: at an edge less than that of all faces around it.
+    pub(super) bears: f64,
     /// Whether the surface around it is smooth.
     is_flat: bool,
     pub(super) body: usize,
@@ -113,13 +113,11 @@ impl Surfaces {
             let own: Vec<Vec<usize>> = faces.iter().filter(is_own).cloned().collect();
             let points = closed_points(body, &own).ok_or(STRING)?.into_iter();
             let is_rigid = surfaces.are_rigid[number];
-            surfaces.points.extend(points.map(|(mut on, around)| {
-                let is_flat = around < SHARP * on.area;
-                // nothing yields to the pressure at the edges of a rigid body, which are as stiff as they can be
-                if is_rigid {
-                    on.area = around;
-                }
-                Point { is_flat, ..Point::new(on, around, number, 0.0) }
+            surfaces.points.extend(points.map(|(on, seen)| {
+                let is_flat = on.area < SHARP * seen;
+                // a rigid body does not yield to uneven pressure: its edges are as stiff as they can be
+                let bears = if is_rigid { on.area } else { seen };
+                Point { bears, is_flat, ..Point::new(on, number, 0.0) }
             }));
             for face in &own {
                 let kind = body.mesh().face_kind(face);
@@ -297,7 +295,7 @@ impl Surfaces {
     /// Area (m^2) of the surface of the body with a number.
     pub(super) fn area(&self, body: usize) -> f64 {
         let own = self.points.iter().filter(|point| point.body == body);
-        own.map(|point| point.around).sum()
+        own.map(|point| point.on.area).sum()
     }
 
     /// Mean length (m) of the sides of the facets, of half a side where there is a mid node; 0 without any.
@@ -408,8 +406,8 @@ impl Surfaces {
 }
 
 impl Point {
-    pub(super) fn new(on: SurfacePoint, around: f64, body: usize, radius: f64) -> Self {
-        Self { on, around, is_flat: true, body, radius, unfelt: Vec::new() }
+    pub(super) fn new(on: SurfacePoint, body: usize, radius: f64) -> Self {
+        Self { bears: on.area, on, is_flat: true, body, radius, unfelt: Vec::new() }
     }
 }
 

@@ -42,7 +42,7 @@ impl Surfaces {
                     Some(end) => at_nodes.entry(ends[end]).or_insert((0.0, radius)).0 += area,
                     None => {
                         let on = SurfacePoint::between(&ends, shares, area);
-                        self.points.push(Point::new(on, area, body, radius));
+                        self.points.push(Point::new(on, body, radius));
                     }
                 }
             }
@@ -53,7 +53,7 @@ impl Surfaces {
         }
         for (node, (area, radius)) in at_nodes {
             let on = SurfacePoint::between(&[node], &[1.0], area);
-            self.points.push(Point::new(on, area, body, radius));
+            self.points.push(Point::new(on, body, radius));
         }
         size
     }
